@@ -10,6 +10,7 @@ from typing import Any, TypeVar, cast
 import numba
 import numpy as np
 from numba.core import config as numba_config
+from numba.core import types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
 from numba.misc.appdirs import AppDirs
 
@@ -19,8 +20,10 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 _CONFIG: Any = numba_config
 
 
-def kernel(signature: str) -> Callable[[Function], Function]:
+def kernel(signature: str, **named: Any) -> Callable[[Function], Function]:
     """Compile a function for one signature, e.g. ``"float64(float64[:], float64[:, ::1])"``.
+
+    ``named``: types of the signature that are not numba's own, by the names that they have there.
 
     One signature, given beforehand: nothing is ever compiled in flight, and arguments of another type raise TypeError.
     Arithmetic keeps its order (no fast math), and a division by zero gives inf or nan as in numpy. The function itself
@@ -33,7 +36,7 @@ def kernel(signature: str) -> Callable[[Function], Function]:
         if dispatcher is not function:  # as it is with NUMBA_DISABLE_JIT
             cache: Any = _KernelCache
             dispatcher._cache = cache(function)
-            dispatcher.compile(signature)
+            dispatcher.compile(eval(signature, {}, {**vars(types), **named}))
             dispatcher.disable_compile()
         return cast(Function, dispatcher)
 

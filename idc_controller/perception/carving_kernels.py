@@ -1,15 +1,14 @@
-"""Rays of a scan through the sparse voxels of the standing map, compiled; arrays: see ``voxel_kernels``."""
+"""Rays of a scan through the sparse voxels of the standing map, compiled."""
 
 import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Cells, Indices, Links
+from idc_controller.arrays import Array, Indices
 from idc_controller.compiled import inlined, kernel
 from idc_controller.perception.element_kernels import free_element, halve_memory
 from idc_controller.perception.normal_kernels import surface_normal
 from idc_controller.perception.voxel_kernels import (
-    ARRAYS,
     CELLS,
     CHANGE,
     FREE,
@@ -27,8 +26,10 @@ from idc_controller.perception.voxel_kernels import (
     PROVEN,
     SCATTER,
     USED,
+    VOXELS,
     WAY,
     WEIGHT,
+    Voxels,
     block_in_page,
     block_key,
     block_of,
@@ -44,9 +45,8 @@ _ALIKE = math.cos(math.radians(20.0))
 
 @inlined
 def _is_passed(
-    table: Indices, pages: Links, blocks: Indices, links: Links, elements: Array, element: Array, origin: Array,
-    way: Array, length: float, range_variance: float, sigmas: Array, sigmas_beyond: float, incidence: float,
-    normal: Array,
+    voxels: Voxels, element: Array, origin: Array, way: Array, length: float, range_variance: float, sigmas: Array,
+    sigmas_beyond: float, incidence: float, normal: Array,
 ) -> int:  # fmt: skip
     """Return whether a ray goes through the place of an element's points and ends beyond.
 
@@ -81,7 +81,7 @@ def _is_passed(
     across = sigmas[1] ** 2 + (sigmas[2] * along) ** 2
     if square - along * along > max(spread, across):
         return 0
-    surface_normal(table, pages, blocks, links, elements, element, normal)
+    surface_normal(voxels, element, normal)
     dot = normal[0] * way[0] + normal[1] * way[1] + normal[2] * way[2]
     if abs(dot) >= incidence or normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2 == 0.0:
         return 1
@@ -107,17 +107,12 @@ def _sides_before(at: int, step: int) -> int:
 
 
 @kernel(
-    f"void({ARRAYS}, float64[::1], float64[:, ::1], float64[:, ::1], float64[::1], float64, float64, int64, float64,"
-    " float64, float64[::1], float64[::1], float64)"
+    "void(Voxels, float64[::1], float64[:, ::1], float64[:, ::1], float64[::1], float64, float64, int64, float64,"
+    " float64, float64[::1], float64[::1], float64)",
+    Voxels=VOXELS,
 )
 def carve(
-    table: Indices,
-    pages: Links,
-    blocks: Indices,
-    cells: Cells,
-    links: Links,
-    elements: Array,
-    counts: Indices,
+    voxels: Voxels,
     origin: Array,
     returns: Array,
     free: Array,
@@ -139,7 +134,7 @@ def carve(
     (beta-binomial).
 
     Args:
-        table, pages, blocks, cells, links, elements, counts: see ``voxel_kernels``; of enough capacity.
+        voxels: of the map, of enough capacity.
         origin: place of the sensor (3,).
         returns: (n, 3), NED (m).
         free: ends of the rays that returned nothing up to there (m, 3), NED (m).
@@ -153,6 +148,7 @@ def carve(
         evidence: nats of one scan's hit, and most of them; least of one that passes through, and along a surface (4,).
         memory: scans that an element remembers.
     """
+    pages, blocks, cells, elements = voxels.pages, voxels.blocks, voxels.cells, voxels.elements
     way, normal = np.empty(3), np.empty(3)
     returned = returns.shape[0]
     for r in range(returned + free.shape[0]):
@@ -176,10 +172,10 @@ def carve(
             if now != key:
                 key = now
                 if page_key(x, y, z) != in_page:
-                    in_page, page = page_key(x, y, z), page_of(table, counts, x, y, z)
+                    in_page, page = page_key(x, y, z), page_of(voxels, x, y, z)
                 block = pages[page, block_in_page(x, y, z)]
                 if block < 0 and not met:
-                    block = block_of(table, pages, blocks, counts, x, y, z)
+                    block = block_of(voxels, x, y, z)
                 if block < 0 or (blocks[block, HELD_CELLS] == 0 and (met or blocks[block, FREE_CELLS] == CELLS)):
                     # Nothing to do in the whole block.
                     out = min(
@@ -201,14 +197,13 @@ def carve(
             value = cells[block, cell]
             if value & HELD:
                 met = True
-                index = (links[block, cell] >> 8) - 1
+                index = (voxels.links[block, cell] >> 8) - 1
                 element = elements[index]
                 passed = 0
                 if element[LAST_HIT] != scan and element[LAST_PASS] != scan:
                     passed = _is_passed(
-                        table, pages, blocks, links, elements, element, origin, way, length, range_variance, sigmas,
-                        sigmas_beyond, incidence, normal,
-                    )  # fmt: skip
+                        voxels, element, origin, way, length, range_variance, sigmas, sigmas_beyond, incidence, normal
+                    )
                 if passed:
                     element[LAST_PASS] = scan
                     # Along a surface, a ray that misses it is as likely as one that hits it elsewhere.
@@ -219,9 +214,7 @@ def carve(
                     # What has appeared where nothing was, and has not lasted, goes as easily as one hit.
                     most = evidence[1] if element[PROVEN] == 1.0 else evidence[0]
                     if element[GONE] >= min(element[HITS] * evidence[0], most):
-                        free_element(
-                            table, pages, blocks, cells, links, elements, counts, index, free_passes, free_passes
-                        )
+                        free_element(voxels, index, free_passes, free_passes)
                     else:
                         halve_memory(element, memory)
             elif not met and value < free_passes:
@@ -240,21 +233,11 @@ def carve(
                 z_next += z_apart
 
 
-@kernel(f"void({ARRAYS}, int64[::1], int64)")
-def release(
-    table: Indices,
-    pages: Links,
-    blocks: Indices,
-    cells: Cells,
-    links: Links,
-    elements: Array,
-    counts: Indices,
-    indices: Indices,
-    free_passes: int,
-) -> None:
+@kernel("void(Voxels, int64[::1], int64)", Voxels=VOXELS)
+def release(voxels: Voxels, indices: Indices, free_passes: int) -> None:
     """Remove elements with ``indices`` (n,) whose points belong to what has moved; no ray has passed there yet."""
     for index in indices:
-        free_element(table, pages, blocks, cells, links, elements, counts, index, free_passes, 0)
+        free_element(voxels, index, free_passes, 0)
 
 
 #: Cells of directions about a vehicle: of azimuth, and of the sine of elevation.
@@ -268,27 +251,27 @@ def _direction_cell(x: float, y: float, z: float, length: float) -> tuple[int, i
     return min(max(azimuth, 0), _AZIMUTHS - 1), min(max(elevation, 0), _ELEVATIONS - 1)
 
 
-@kernel("float64[:, ::1](float64[:, ::1], int64[::1], float64[::1], float64[:, ::1], int64, int64)")
-def followed_rays(elements: Array, counts: Indices, origin: Array, free: Array, first: int, stride: int) -> Array:
+@kernel("float64[:, ::1](Voxels, float64[::1], float64[:, ::1], int64, int64)", Voxels=VOXELS)
+def followed_rays(voxels: Voxels, origin: Array, free: Array, first: int, stride: int) -> Array:
     """Return those rays without return (k, 3) that may pass an element, and of the others every ``stride``-th.
 
     What stands is freed by the evidence of all rays; where nothing stands, space is seen free by few.
 
     Args:
-        elements, counts: see ``voxel_kernels``.
+        voxels: of the map.
         origin: place of the sensor (3,).
         free: ends of the rays (m, 3), NED (m).
         first: number of the first ray of the others.
         stride: of the others.
     """
     near = np.zeros((_AZIMUTHS, _ELEVATIONS), np.bool_)
-    reach = 0.0
+    elements, reach = voxels.elements, 0.0
     for r in range(free.shape[0]):
         square = 0.0
         for i in range(3):
             square += (free[r, i] - origin[i]) ** 2
         reach = max(reach, square)
-    for e in range(counts[USED]):
+    for e in range(voxels.counts[USED]):
         if elements[e, NUMBER] == 0.0:
             continue
         x, y, z = (elements[e, MEAN] - origin[0], elements[e, MEAN + 1] - origin[1], elements[e, MEAN + 2] - origin[2])

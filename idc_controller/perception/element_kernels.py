@@ -1,6 +1,6 @@
-"""Surface elements of the standing map's voxels: created, freed and faded, compiled; arrays: see ``voxel_kernels``."""
+"""Surface elements of the standing map's voxels: created, freed and faded, compiled."""
 
-from idc_controller.arrays import Array, Cells, Indices, Links
+from idc_controller.arrays import Array
 from idc_controller.compiled import inlined
 from idc_controller.perception.voxel_kernels import (
     BLOCK,
@@ -23,16 +23,15 @@ from idc_controller.perception.voxel_kernels import (
     USED,
     WAY,
     WEIGHT,
+    Voxels,
     add_near,
 )
 
 
 @inlined
-def new_element(
-    table: Indices, pages: Links, blocks: Indices, cells: Cells, links: Links, elements: Array, counts: Indices,
-    block: int, cell: int,
-) -> int:  # fmt: skip
+def new_element(voxels: Voxels, block: int, cell: int) -> int:
     """Return the index of a new element of a voxel that has none."""
+    elements, counts = voxels.elements, voxels.counts
     index = counts[SPARE] - 1
     if index < 0:
         index = counts[USED]
@@ -42,29 +41,26 @@ def new_element(
     counts[SERIAL] += 1
     elements[index] = 0.0
     elements[index, BLOCK], elements[index, CELL], elements[index, NUMBER] = block, cell, counts[SERIAL]
-    cells[block, cell] |= HELD
-    links[block, cell] += (index + 1) << 8
-    blocks[block, CHANGE] |= SURFACE
-    blocks[block, HELD_CELLS] += 1
-    add_near(table, pages, blocks, links, counts, elements[index], 1)
+    voxels.cells[block, cell] |= HELD
+    voxels.links[block, cell] += (index + 1) << 8
+    voxels.blocks[block, CHANGE] |= SURFACE
+    voxels.blocks[block, HELD_CELLS] += 1
+    add_near(voxels, elements[index], 1)
     return int(index)
 
 
 @inlined
-def free_element(
-    table: Indices, pages: Links, blocks: Indices, cells: Cells, links: Links, elements: Array, counts: Indices,
-    index: int, free_passes: int, least_passes: int,
-) -> None:  # fmt: skip
+def free_element(voxels: Voxels, index: int, free_passes: int, least_passes: int) -> None:
     """Remove an element; its voxel counts as passed by ``least_passes`` rays, if there were not more."""
-    element = elements[index]
+    element, blocks, cells, counts = voxels.elements[index], voxels.blocks, voxels.cells, voxels.counts
     block, cell = int(element[BLOCK]), int(element[CELL])
-    add_near(table, pages, blocks, links, counts, element, -1)
+    add_near(voxels, element, -1)
     passed = cells[block, cell] & PASSED
     if passed < least_passes:
         blocks[block, FREE_CELLS] += least_passes == free_passes
         passed = least_passes
     cells[block, cell] = passed
-    links[block, cell] &= 255
+    voxels.links[block, cell] &= 255
     blocks[block, CHANGE] |= SURFACE | FREE
     blocks[block, HELD_CELLS] -= 1
     element[NUMBER], element[NEXT_SPARE] = 0.0, counts[SPARE]

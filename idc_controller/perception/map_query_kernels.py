@@ -1,54 +1,51 @@
-"""Questions to the standing map, compiled; arrays: see ``voxel_kernels``."""
+"""Questions to the standing map, compiled."""
 
 import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Cells, Indices, Links, Mask
+from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.compiled import inlined, kernel
 from idc_controller.perception.normal_kernels import surface_normal
 from idc_controller.perception.voxel_kernels import (
     BORN,
     HELD,
     MEAN,
+    NUMBER,
     PASSED,
     PROVEN,
     SCATTER,
+    VOXELS,
     WEIGHT,
+    Voxels,
     cell_index,
     element_at,
+    element_voxel,
     find_block,
     voxel,
 )
 
 
-@kernel("boolean[::1](int64[:, ::1], int32[:, ::1], int32[:, ::1], float64[:, ::1], float64[:, ::1], float64, float64)")
-def stands_at(
-    table: Indices, pages: Links, links: Links, elements: Array, points: Array, size: float, since: float
-) -> Mask:
+@kernel("boolean[::1](Voxels, float64[:, ::1], float64, float64)", Voxels=VOXELS)
+def stands_at(voxels: Voxels, points: Array, size: float, since: float) -> Mask:
     """Return whether the voxels with ``points`` (n, 3) hold standing points, and have ``since`` that time (s) (n,)."""
-    found = np.zeros(points.shape[0], np.bool_)
+    elements, found = voxels.elements, np.zeros(points.shape[0], np.bool_)
     for p in range(points.shape[0]):
         x, y, z = voxel(points[p, 0], size), voxel(points[p, 1], size), voxel(points[p, 2], size)
-        index = element_at(table, pages, links, x, y, z)
+        index = element_at(voxels, x, y, z)
         found[p] = index >= 0 and elements[index, PROVEN] == 1.0 and elements[index, BORN] <= since
     return found
 
 
-@kernel(
-    "float64[:, ::1](int64[:, ::1], int32[:, ::1], int64[:, ::1], int32[:, ::1], float64[:, ::1], float64[:, ::1],"
-    " float64)"
-)
-def normals_at(
-    table: Indices, pages: Links, blocks: Indices, links: Links, elements: Array, points: Array, size: float
-) -> Array:
+@kernel("float64[:, ::1](Voxels, float64[:, ::1], float64)", Voxels=VOXELS)
+def normals_at(voxels: Voxels, points: Array, size: float) -> Array:
     """Return the unit normals of what stands at ``points`` (n, 3) -> (n, 3); zero where nothing does."""
-    found = np.zeros((points.shape[0], 3))
+    elements, found = voxels.elements, np.zeros((points.shape[0], 3))
     for p in range(points.shape[0]):
         x, y, z = voxel(points[p, 0], size), voxel(points[p, 1], size), voxel(points[p, 2], size)
-        index = element_at(table, pages, links, x, y, z)
+        index = element_at(voxels, x, y, z)
         if index >= 0 and elements[index, PROVEN] == 1.0:
-            surface_normal(table, pages, blocks, links, elements, elements[index], found[p])
+            surface_normal(voxels, elements[index], found[p])
     return found
 
 
@@ -67,19 +64,9 @@ def _square_distance(c: Array, d: Array) -> float:
 
 
 @inlined
-def _is_free_about(
-    table: Indices,
-    pages: Links,
-    cells: Cells,
-    links: Links,
-    elements: Array,
-    point: Array,
-    radius: float,
-    size: float,
-    free_passes: int,
-) -> bool:
+def _is_free_about(voxels: Voxels, point: Array, radius: float, size: float, free_passes: int) -> bool:
     """Return whether all voxels that a ball reaches into were seen free and hold no standing points."""
-    x, y, z = point[0], point[1], point[2]
+    x, y, z, cells = point[0], point[1], point[2], voxels.cells
     for i in range(voxel(x - radius, size), voxel(x + radius, size) + 1):
         u = max(i * size - x, x - (i + 1) * size, 0.0)
         for j in range(voxel(y - radius, size), voxel(y + radius, size) + 1):
@@ -88,24 +75,18 @@ def _is_free_about(
                 w = max(k * size - z, z - (k + 1) * size, 0.0)
                 if u * u + v * v + w * w > radius * radius:
                     continue
-                block, cell = find_block(table, pages, i, j, k), cell_index(i, j, k)
+                block, cell = find_block(voxels, i, j, k), cell_index(i, j, k)
                 if block < 0 or cells[block, cell] & PASSED < free_passes:
                     return False
-                if cells[block, cell] & HELD and elements[(links[block, cell] >> 8) - 1, PROVEN] == 1.0:
+                element = (voxels.links[block, cell] >> 8) - 1
+                if cells[block, cell] & HELD and voxels.elements[element, PROVEN] == 1.0:
                     return False
     return True
 
 
-@kernel(
-    "boolean[::1](int64[:, ::1], int32[:, ::1], uint8[:, ::1], int32[:, ::1], float64[:, ::1], float64[::1],"
-    " float64[:, ::1], float64[::1], float64, int64, float64)"
-)
+@kernel("boolean[::1](Voxels, float64[::1], float64[:, ::1], float64[::1], float64, int64, float64)", Voxels=VOXELS)
 def unexplained_returns(
-    table: Indices,
-    pages: Links,
-    cells: Cells,
-    links: Links,
-    elements: Array,
+    voxels: Voxels,
     origin: Array,
     returns: Array,
     sigmas: Array,
@@ -116,7 +97,7 @@ def unexplained_returns(
     """Return which returns (n,) lie in what was seen free and farther from standing points than noise explains.
 
     Args:
-        table, pages, cells, links, elements: see :mod:`idc_controller.perception.voxel_kernels`.
+        voxels: of the map.
         origin: place of the sensor (3,).
         returns: (n, 3), NED (m).
         sigmas: standard deviations of range (m), position (m) and attitude (rad).
@@ -124,7 +105,7 @@ def unexplained_returns(
         free_passes: rays through a voxel from which on it was seen free.
         chi_squared: square of the distance, in standard deviations, from which on noise explains it no more.
     """
-    found = np.zeros(returns.shape[0], np.bool_)
+    elements, found = voxels.elements, np.zeros(returns.shape[0], np.bool_)
     way, offset, covariance, own = np.empty(3), np.empty(3), np.empty((3, 3)), np.empty((3, 3))
     for p in range(returns.shape[0]):
         square = 0.0
@@ -136,7 +117,7 @@ def unexplained_returns(
         across = sigmas[1] ** 2 + sigmas[2] ** 2 * square
         along = sigmas[1] ** 2 + sigmas[0] ** 2
         radius = math.sqrt(chi_squared * max(across, along))
-        if not _is_free_about(table, pages, cells, links, elements, returns[p], radius, size, free_passes):
+        if not _is_free_about(voxels, returns[p], radius, size, free_passes):
             continue
         for i in range(3):
             for j in range(3):
@@ -147,7 +128,7 @@ def unexplained_returns(
         for x in range(voxel(returns[p, 0] - reach, size), voxel(returns[p, 0] + reach, size) + 1):
             for y in range(voxel(returns[p, 1] - reach, size), voxel(returns[p, 1] + reach, size) + 1):
                 for z in range(voxel(returns[p, 2] - reach, size), voxel(returns[p, 2] + reach, size) + 1):
-                    index = element_at(table, pages, links, x, y, z)
+                    index = element_at(voxels, x, y, z)
                     if explained or index < 0 or elements[index, PROVEN] == 0.0:
                         continue
                     element = elements[index]
@@ -160,4 +141,28 @@ def unexplained_returns(
                             column += 1
                     explained = _square_distance(covariance, offset) <= chi_squared
         found[p] = not explained
+    return found
+
+
+@kernel("int64[::1](Voxels, int64[::1], int64[:, ::1], int64)", Voxels=VOXELS)
+def nearest_owners(voxels: Voxels, indices: Indices, owners: Indices, reach: int) -> Indices:
+    """Return for elements ``indices`` (n,) the owner of the nearest that has one within ``reach`` voxels, or -1.
+
+    ``owners``: owner and serial number of each element (E, 2); of another serial number: none.
+    """
+    elements, found = voxels.elements, np.full(indices.shape[0], -1, np.int64)
+    for n in range(indices.shape[0]):
+        x, y, z = element_voxel(voxels, elements[indices[n]])
+        nearest = reach * reach + 1
+        for i in range(-reach, reach + 1):
+            for j in range(-reach, reach + 1):
+                for k in range(-reach, reach + 1):
+                    square = i * i + j * j + k * k
+                    if square >= nearest:
+                        continue
+                    index = element_at(voxels, x + i, y + j, z + k)
+                    if index < 0 or index >= owners.shape[0] or owners[index, 0] < 0:
+                        continue
+                    if owners[index, 1] == int(elements[index, NUMBER]):
+                        nearest, found[n] = square, owners[index, 0]
     return found

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Indices, Links
+from idc_controller.arrays import Array
 from idc_controller.compiled import inlined
-from idc_controller.perception.voxel_kernels import HITS, MEAN, element_at, element_voxel
+from idc_controller.perception.voxel_kernels import HITS, MEAN, Voxels, element_at, element_voxel
 
 _FEWEST = 3
 """Voxels with points about a voxel, itself included, from which on they have a normal."""
@@ -47,16 +47,15 @@ def least_direction(a: Array, normal: Array) -> None:
 
 
 @inlined
-def surface_normal(
-    table: Indices, pages: Links, blocks: Indices, links: Links, elements: Array, element: Array, normal: Array
-) -> None:
+def surface_normal(voxels: Voxels, element: Array, normal: Array) -> None:
     """Write the normal of the surface about an ``element`` into ``normal`` (3,); zero where there is none."""
-    x, y, z = element_voxel(blocks, element)
+    x, y, z = element_voxel(voxels, element)
+    elements = voxels.elements
     mean, square, weight, count = np.zeros(3), np.zeros((3, 3)), 0.0, 0
     for i in range(x - 1, x + 2):
         for j in range(y - 1, y + 2):
             for k in range(z - 1, z + 2):
-                index = element_at(table, pages, links, i, j, k)
+                index = element_at(voxels, i, j, k)
                 if index < 0:
                     continue
                 hits = elements[index, HITS]

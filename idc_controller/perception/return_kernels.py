@@ -1,12 +1,11 @@
-"""Returns of a scan in the sparse voxels of the standing map, compiled; arrays: see ``voxel_kernels``."""
+"""Returns of a scan in the sparse voxels of the standing map, compiled."""
 
 import math
 
-from idc_controller.arrays import Array, Cells, Indices, Links, Mask
+from idc_controller.arrays import Array, Indices, Links, Mask
 from idc_controller.compiled import inlined, kernel
 from idc_controller.perception.element_kernels import free_element, halve_memory, new_element
 from idc_controller.perception.voxel_kernels import (
-    ARRAYS,
     BORN,
     CHANGE,
     GONE,
@@ -22,8 +21,10 @@ from idc_controller.perception.voxel_kernels import (
     PROVEN,
     SCATTER,
     SURFACE,
+    VOXELS,
     WAY,
     WEIGHT,
+    Voxels,
     block_of,
     cell_index,
     element_at,
@@ -74,15 +75,13 @@ def enter_pages(table: Indices, pages: Links, blocks: Indices, count: int) -> No
 
 
 @inlined
-def _explaining_element(
-    table: Indices, pages: Links, links: Links, elements: Array, x: int, y: int, z: int, point: Array, variance: float
-) -> int:
+def _explaining_element(voxels: Voxels, x: int, y: int, z: int, point: Array, variance: float) -> int:
     """Return the index of an often-hit element about voxel (x, y, z) whose bounds are near a point, -1 if none is."""
-    nearest, found = _NEAR * _NEAR * variance, -1
+    elements, nearest, found = voxels.elements, _NEAR * _NEAR * variance, -1
     for i in range(x - 1, x + 2):
         for j in range(y - 1, y + 2):
             for k in range(z - 1, z + 2):
-                index = element_at(table, pages, links, i, j, k)
+                index = element_at(voxels, i, j, k)
                 if index < 0 or elements[index, HITS] < _RARER or elements[index, PROVEN] == 0.0:
                     continue
                 square = 0.0
@@ -95,20 +94,18 @@ def _explaining_element(
 
 
 @inlined
-def _absorb_noise(
-    table: Indices, pages: Links, blocks: Indices, cells: Cells, links: Links, elements: Array, counts: Indices,
-    element: Array, free_passes: int, chi_squared: float,
-) -> None:  # fmt: skip
+def _absorb_noise(voxels: Voxels, element: Array, free_passes: int, chi_squared: float) -> None:
     """Remove elements in the voxels about an element that its surface explains, with the noise of their points.
 
     Such are less accurate and were hit by much fewer scans: what is there, better scans would have hit as often.
     """
-    x, y, z = element_voxel(blocks, element)
+    x, y, z = element_voxel(voxels, element)
+    elements = voxels.elements
     variance = element[POINTS] / element[WEIGHT]
     for i in range(x - 1, x + 2):
         for j in range(y - 1, y + 2):
             for k in range(z - 1, z + 2):
-                index = element_at(table, pages, links, i, j, k)
+                index = element_at(voxels, i, j, k)
                 if index < 0 or elements[index, HITS] * _RARER > element[HITS]:
                     continue
                 other = elements[index, POINTS] / elements[index, WEIGHT]
@@ -118,21 +115,16 @@ def _absorb_noise(
                 for axis in range(3):
                     square += (elements[index, MEAN + axis] - element[MEAN + axis]) ** 2
                 if square <= chi_squared * other:
-                    free_element(table, pages, blocks, cells, links, elements, counts, index, free_passes, 0)
+                    free_element(voxels, index, free_passes, 0)
 
 
 @kernel(
-    f"void({ARRAYS}, float64[::1], float64[:, ::1], boolean[::1], float64[::1], float64, float64, float64, int64,"
-    " float64, float64, float64, float64)"
+    "void(Voxels, float64[::1], float64[:, ::1], boolean[::1], float64[::1], float64, float64, float64, int64,"
+    " float64, float64, float64, float64)",
+    Voxels=VOXELS,
 )
 def add_returns(
-    table: Indices,
-    pages: Links,
-    blocks: Indices,
-    cells: Cells,
-    links: Links,
-    elements: Array,
-    counts: Indices,
+    voxels: Voxels,
     origin: Array,
     returns: Array,
     taken: Mask,
@@ -149,7 +141,7 @@ def add_returns(
     """Add the returns of a scan to the elements of their voxels.
 
     Args:
-        table, pages, blocks, cells, links, elements, counts: see ``voxel_kernels``; of enough capacity.
+        voxels: of the map, of enough capacity.
         origin: place of the sensor (3,).
         returns: (n, 3), NED (m).
         taken: which of them are added (n,).
@@ -162,6 +154,7 @@ def add_returns(
         memory: scans that an element remembers.
         chi_squared: square of the distance, in standard deviations, up to which noise explains it.
     """
+    blocks, links, elements = voxels.blocks, voxels.links, voxels.elements
     for p in range(returns.shape[0]):
         square = 0.0
         for i in range(3):
@@ -169,18 +162,18 @@ def add_returns(
         if not (taken[p] and square < math.inf):
             continue
         x, y, z = voxel(returns[p, 0], size), voxel(returns[p, 1], size), voxel(returns[p, 2], size)
-        block, cell = block_of(table, pages, blocks, counts, x, y, z), cell_index(x, y, z)
+        block, cell = block_of(voxels, x, y, z), cell_index(x, y, z)
         variance = sigmas[1] ** 2 + (sigmas[0] ** 2 + 2.0 * sigmas[2] ** 2 * square) / 3.0
         index = (links[block, cell] >> 8) - 1
         if index < 0:
             if links[block, cell] & 255:
-                index = _explaining_element(table, pages, links, elements, x, y, z, returns[p], variance)
+                index = _explaining_element(voxels, x, y, z, returns[p], variance)
             if index >= 0:
                 # It shows that those are still there, but not where.
                 elements[index, LAST_HIT], elements[index, GONE] = scan, 0.0
                 continue
-            was_free = cells[block, cell] & PASSED >= free_passes
-            index = new_element(table, pages, blocks, cells, links, elements, counts, block, cell)
+            was_free = voxels.cells[block, cell] & PASSED >= free_passes
+            index = new_element(voxels, block, cell)
             elements[index, BORN], elements[index, PROVEN] = time, 0.0 if was_free else 1.0
             for i in range(3):
                 elements[index, MEAN + i] = elements[index, LOW + i] = elements[index, HIGH + i] = returns[p, i]
@@ -193,7 +186,7 @@ def add_returns(
             if time - element[BORN] >= settling:
                 element[PROVEN] = 1.0
             if element[HITS] >= _RARER and int(element[HITS]) % 8 == 0:
-                _absorb_noise(table, pages, blocks, cells, links, elements, counts, element, free_passes, chi_squared)
+                _absorb_noise(voxels, element, free_passes, chi_squared)
         weight = 1.0 / max(variance, 1e-6)
         element[WEIGHT] += weight
         element[POINTS] += 1.0

@@ -1,21 +1,19 @@
-"""What of a body's way was not seen free, and what of it is hidden, compiled; arrays: see ``voxel_kernels``."""
+"""What of a body's way was not seen free, and what of it is hidden, compiled."""
 
 import math
 
-from idc_controller.arrays import Array, Cells, Indices, Links
+from idc_controller.arrays import Array
 from idc_controller.compiled import inlined, kernel
-from idc_controller.perception.voxel_kernels import HELD, PASSED, cell_index, find_block, voxel
+from idc_controller.perception.voxel_kernels import HELD, PASSED, VOXELS, Voxels, cell_index, find_block, voxel
 
 
 @inlined
-def _is_seen(
-    table: Indices, pages: Links, cells: Cells, links: Links, x: int, y: int, z: int, width: int, rays: int
-) -> bool:
+def _is_seen(voxels: Voxels, x: int, y: int, z: int, width: int, rays: int) -> bool:
     """Return whether ``rays`` have passed a cube of voxels from (x, y, z) on, or there are points at it.
 
     A ray passes ``3 width - 2`` voxels of the cube at most; those through one voxel are as many rays.
     """
-    block = find_block(table, pages, x, y, z)
+    block = find_block(voxels, x, y, z)
     if block < 0:
         return False
     passes = 0
@@ -23,36 +21,22 @@ def _is_seen(
         for j in range(y, y + width):
             for k in range(z, z + width):
                 cell = cell_index(i, j, k)
-                value = cells[block, cell]
-                if value & HELD or links[block, cell] & 255 or value & PASSED >= rays:
+                value = voxels.cells[block, cell]
+                if value & HELD or voxels.links[block, cell] & 255 or value & PASSED >= rays:
                     return True
                 passes += value & PASSED
     return passes > (rays - 1) * (3 * width - 2)
 
 
-@kernel(
-    "int64(int64[:, ::1], int32[:, ::1], uint8[:, ::1], int32[:, ::1], float64[:, ::1], float64[::1], float64, int64,"
-    " int64, float64[:, ::1])"
-)
-def unseen_cells(
-    table: Indices,
-    pages: Links,
-    cells: Cells,
-    links: Links,
-    path: Array,
-    body: Array,
-    size: float,
-    width: int,
-    rays: int,
-    found: Array,
-) -> int:
+@kernel("int64(Voxels, float64[:, ::1], float64[::1], float64, int64, int64, float64[:, ::1])", Voxels=VOXELS)
+def unseen_cells(voxels: Voxels, path: Array, body: Array, size: float, width: int, rays: int, found: Array) -> int:
     """Return how many cells of a body's way from the first place of its path on were not seen free.
 
     Cells are cubes of voxels, on the way if their middle is; those that the body holds at the first place are not. None
     of which a voxel holds points, or is next to one that does, is among them.
 
     Args:
-        table, pages, cells, links: see ``voxel_kernels``.
+        voxels: of the map.
         path: places of the body (P, 3), NED (m).
         body: upright cylinder: radius, extent up and down from its place, height above the ground below which nothing
             is seen (4,) (m).
@@ -87,7 +71,7 @@ def unseen_cells(
                         continue
                     if was_first and first_top <= place <= first_bottom:
                         continue
-                    if not _is_seen(table, pages, cells, links, i * width, j * width, k * width, width, rays):
+                    if not _is_seen(voxels, i * width, j * width, k * width, width, rays):
                         if count == found.shape[0]:
                             return count
                         found[count, 0], found[count, 1], found[count, 2], found[count, 3] = before, north, east, place
@@ -97,9 +81,7 @@ def unseen_cells(
 
 
 @inlined
-def _is_clear(
-    table: Indices, pages: Links, cells: Cells, start: Array, north: float, east: float, down: float, size: float
-) -> bool:
+def _is_clear(voxels: Voxels, start: Array, north: float, east: float, down: float, size: float) -> bool:
     """Return whether no voxel with points is met from ``start`` (3,) on, at steps of half a voxel, short of the end."""
     u, v, w = north - start[0], east - start[1], down - start[2]
     steps = math.ceil(2.0 * math.sqrt(u * u + v * v + w * w) / size)
@@ -110,16 +92,14 @@ def _is_clear(
             voxel(start[1] + share * v, size),
             voxel(start[2] + share * w, size),
         )
-        block = find_block(table, pages, x, y, z)
-        if block >= 0 and cells[block, cell_index(x, y, z)] & HELD:
+        block = find_block(voxels, x, y, z)
+        if block >= 0 and voxels.cells[block, cell_index(x, y, z)] & HELD:
             return False
     return True
 
 
-@kernel("int64(int64[:, ::1], int32[:, ::1], uint8[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1], float64)")
-def first_hidden(
-    table: Indices, pages: Links, cells: Cells, path: Array, sensors: Array, heights: Array, size: float
-) -> int:
+@kernel("int64(Voxels, float64[:, ::1], float64[:, ::1], float64[::1], float64)", Voxels=VOXELS)
+def first_hidden(voxels: Voxels, path: Array, sensors: Array, heights: Array, size: float) -> int:
     """Return the index of the first place of a ``path`` (P, 3) that what was hit hides from all ``sensors`` (N, 3).
 
     A place is hidden if all of its points at ``heights`` (H,) (m) above it are; P: none is. NED (m).
@@ -129,9 +109,7 @@ def first_hidden(
         is_hidden = True
         for h in range(heights.shape[0]):
             for s in range(sensors.shape[0]):
-                if is_hidden and _is_clear(
-                    table, pages, cells, sensors[s], path[p, 0], path[p, 1], path[p, 2] - heights[h], size
-                ):
+                if is_hidden and _is_clear(voxels, sensors[s], path[p, 0], path[p, 1], path[p, 2] - heights[h], size):
                     is_hidden = False
         if is_hidden:
             return p

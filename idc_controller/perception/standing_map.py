@@ -21,7 +21,6 @@ from idc_controller.geometry.shape import Shape
 from idc_controller.perception import map_query_kernels as queries
 from idc_controller.perception import upright_box_kernels as boxes
 from idc_controller.perception.carving_kernels import carve, followed_rays, release
-from idc_controller.perception.convex_pieces_kernels import nearest_owners
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.return_kernels import add_returns
 from idc_controller.perception.settings import StandingMapSettings
@@ -92,27 +91,24 @@ class StandingMap:
         """Add one scan; ``moving``: returns (n,) of what is known to move, which leave no points."""
         s, v = self.settings, self._store
         origin, returns = np.ascontiguousarray(scan.origin), np.ascontiguousarray(scan.returns)
-        free = followed_rays(
-            v.elements, v.counts, origin, np.ascontiguousarray(scan.free_rays), self._scan, s.exploring_stride
-        )
+        free = followed_rays(v.arrays, origin, np.ascontiguousarray(scan.free_rays), self._scan, s.exploring_stride)
         taken = np.ones(len(returns), dtype=bool) if moving is None else ~moving
         self._scan += 1
         v.reserve(origin, returns, free)
-        arrays = v.table, v.pages, v.blocks, v.cells, v.links, v.elements, v.counts
         sigmas, number = _sigmas(scan), float(self._scan)
         add_returns(
-            *arrays, origin, returns, taken, sigmas, scan.time, number, s.voxel, s.free_passes, s.settling_time,
+            v.arrays, origin, returns, taken, sigmas, scan.time, number, s.voxel, s.free_passes, s.settling_time,
             s.tolerance, s.memory, self._chi_squared,
         )  # fmt: skip
         carve(
-            *arrays, origin, returns, free, sigmas, number, s.voxel, s.free_passes, s.sigmas_beyond,
+            v.arrays, origin, returns, free, sigmas, number, s.voxel, s.free_passes, s.sigmas_beyond,
             s.incidence_min, self._prior, self._evidence, s.memory,
         )  # fmt: skip
 
     def normals(self, points: Array) -> Array:
         """Return the unit normals of what stands at ``points`` (n, 3) -> (n, 3); zero where they are not known."""
-        v, points = self._store, np.ascontiguousarray(points, dtype=float).reshape(-1, 3)
-        return queries.normals_at(v.table, v.pages, v.blocks, v.links, v.elements, points, self.settings.voxel)
+        points = np.ascontiguousarray(points, dtype=float).reshape(-1, 3)
+        return queries.normals_at(self._store.arrays, points, self.settings.voxel)
 
     def release(self, bodies: Sequence[tuple[Shape, Array, float]], gap: float) -> None:
         """Remove the points within ``gap`` (m) of bodies that move, unless they have stood for longer than these.
@@ -120,17 +116,15 @@ class StandingMap:
         Each body is a shape, its centre (3,) (NED, m) and the time (s) since which it has been seen: what was hit more
         than the settling time before is not of it.
         """
-        v = self._store
-        indices = self._used()
+        arrays, indices = self._store.arrays, self._used()
         if not len(indices) or not bodies:
             return
-        means = v.elements[indices, MEAN : MEAN + 3]
+        means = arrays.elements[indices, MEAN : MEAN + 3]
         shapes, centres, first = zip(*bodies, strict=True)
         distance = Bodies(shapes).distance(means, np.array(centres))
         since = np.array(first) - self.settings.settling_time
-        is_its = (distance <= gap) & (v.elements[indices, BORN] >= since[:, None])
-        found = indices[is_its.any(axis=0)]
-        release(v.table, v.pages, v.blocks, v.cells, v.links, v.elements, v.counts, found, self.settings.free_passes)
+        is_its = (distance <= gap) & (arrays.elements[indices, BORN] >= since[:, None])
+        release(arrays, indices[is_its.any(axis=0)], self.settings.free_passes)
 
     def unseen(self, path: Array, body: Array, most: int) -> tuple[Indices, Array]:
         """Return up to ``most`` cells on the way of a body along its ``path`` (P, 3) that were not seen free.
@@ -138,17 +132,16 @@ class StandingMap:
         Of each the index of the last place before it (n,), and its middle (n, 3) (NED, m). ``body`` (4,): see
         :func:`~idc_controller.perception.sight_kernels.unseen_cells`.
         """
-        s, v, found = self.settings, self._store, np.empty((most, 4))
+        s, found = self.settings, np.empty((most, 4))
         count = unseen_cells(
-            v.table, v.pages, v.cells, v.links, np.ascontiguousarray(path), body, s.voxel, s.sight_width,
-            s.sight_rays, found,
-        )  # fmt: skip
+            self._store.arrays, np.ascontiguousarray(path), body, s.voxel, s.sight_width, s.sight_rays, found
+        )
         return found[:count, 0].astype(np.int64), found[:count, 1:]
 
     def first_hidden(self, path: Array, sensors: Array, heights: Array) -> int:
         """See :func:`~idc_controller.perception.sight_kernels.first_hidden`."""
-        v, path = self._store, np.ascontiguousarray(path)
-        return int(first_hidden(v.table, v.pages, v.cells, path, sensors, heights, self.settings.voxel))
+        path = np.ascontiguousarray(path)
+        return int(first_hidden(self._store.arrays, path, sensors, heights, self.settings.voxel))
 
     @property
     def is_empty(self) -> bool:
@@ -162,8 +155,8 @@ class StandingMap:
 
     def is_standing(self, points: Array, since: float = math.inf) -> Mask:
         """Return whether the voxels with ``points`` (n, 3) hold what stands, and was first hit before ``since`` (s)."""
-        v, points = self._store, np.ascontiguousarray(points, dtype=float).reshape(-1, 3)
-        return queries.stands_at(v.table, v.pages, v.links, v.elements, points, self.settings.voxel, since)
+        points = np.ascontiguousarray(points, dtype=float).reshape(-1, 3)
+        return queries.stands_at(self._store.arrays, points, self.settings.voxel, since)
 
     def unexplained(self, scan: PlacedScan) -> Mask:
         """Return the returns (n,) of a scan, before it is added, that standing points and noise do not explain.
@@ -171,11 +164,10 @@ class StandingMap:
         All that lies within their noise was seen free, and they are farther from all standing points than their noise
         and those points' spread explain, at the stated false-alarm probability.
         """
-        s, v = self.settings, self._store
+        s, origin, returns = self.settings, np.ascontiguousarray(scan.origin), np.ascontiguousarray(scan.returns)
         return queries.unexplained_returns(
-            v.table, v.pages, v.cells, v.links, v.elements, np.ascontiguousarray(scan.origin),
-            np.ascontiguousarray(scan.returns), _sigmas(scan), s.voxel, s.free_passes, self._chi_squared,
-        )  # fmt: skip
+            self._store.arrays, origin, returns, _sigmas(scan), s.voxel, s.free_passes, self._chi_squared
+        )
 
     def occupied(self) -> SurfaceElements:
         """Return all surface elements."""
@@ -187,8 +179,8 @@ class StandingMap:
         Numbers (n,); first voxels of each (n, 3), which has ``EDGE`` along each edge; whether points came or went (n,),
         not only free voxels.
         """
-        count = int(self._store.counts[BLOCKS])
-        changes = self._store.blocks[:count, CHANGE]
+        count = int(self._store.arrays.counts[BLOCKS])
+        changes = self._store.arrays.blocks[:count, CHANGE]
         changed = np.flatnonzero(changes)
         surface = changes[changed] & SURFACE != 0
         changes[changed] = 0
@@ -196,12 +188,12 @@ class StandingMap:
 
     def elements_of(self, blocks: Indices) -> SurfaceElements:
         """Return the surface elements in some ``blocks`` (n,)."""
-        found = (self._store.links[blocks].ravel() >> 8).astype(np.int64) - 1
+        found = (self._store.arrays.links[blocks].ravel() >> 8).astype(np.int64) - 1
         return self.elements(found[found >= 0])
 
     def elements(self, indices: Indices) -> SurfaceElements:
         """Return the surface elements with these ``indices`` (n,)."""
-        rows = self._store.elements[indices]
+        rows = self._store.arrays.elements[indices]
         return SurfaceElements(
             indices,
             rows[:, NUMBER].astype(np.int64),
@@ -216,51 +208,48 @@ class StandingMap:
 
     def are_current(self, indices: Indices, numbers: Indices) -> Mask:
         """Return whether elements are still those with these serial ``numbers`` (n,)."""
-        return np.asarray(self._store.elements[indices, NUMBER] == numbers)
+        return np.asarray(self._store.arrays.elements[indices, NUMBER] == numbers)
 
     def gaps(self, box: Array, most: int, among: Indices = _ALL) -> Array:
         """Return the middles (n, 3) of up to ``most`` gaps in a box: seen free, with no point in the 27 voxels about.
 
         ``box`` (8,): see :mod:`idc_controller.perception.upright_box`; ``among``: blocks that are searched.
         """
-        s, v = self.settings, self._store
-        return boxes.gaps_within(v.table, v.pages, v.blocks, v.cells, v.links, among, box, s.voxel, s.free_passes, most)
+        s = self.settings
+        return boxes.gaps_within(self._store.arrays, among, box, s.voxel, s.free_passes, most)
 
     def cover(self, indices: Indices, bounds: Array) -> None:
         """Write the bounds of the true surface at elements ``indices`` (n,) into ``bounds`` (E, 6) (m)."""
-        v = self._store
-        boxes.cover_points(
-            v.table, v.pages, v.blocks, v.links, v.elements, indices, self._sigmas, self.settings.tolerance, bounds
-        )
+        boxes.cover_points(self._store.arrays, indices, self._sigmas, self.settings.tolerance, bounds)
 
     def nearest_owners(self, indices: Indices, owners: Indices) -> Indices:
         """Return for elements ``indices`` (n,) the owner of the nearest that has one within the bridged gap, or -1.
 
         ``owners``: owner and serial number of each element (E, 2); of another serial number: none.
         """
-        v, reach = self._store, math.ceil(self.settings.bridged_gap / self.settings.voxel)
-        return nearest_owners(v.table, v.pages, v.blocks, v.links, v.elements, indices, owners, reach)
+        reach = math.ceil(self.settings.bridged_gap / self.settings.voxel)
+        return queries.nearest_owners(self._store.arrays, indices, owners, reach)
 
     def hits(self, indices: Indices) -> float:
         """Return the sum of the scans that hit elements ``indices`` (n,)."""
-        return float(self._store.elements[indices, HITS].sum())
+        return float(self._store.arrays.elements[indices, HITS].sum())
 
     def numbers(self, indices: Indices) -> Indices:
         """Return the serial numbers of elements ``indices`` (n,)."""
-        return np.asarray(self._store.elements[indices, NUMBER].astype(np.int64))
+        return np.asarray(self._store.arrays.elements[indices, NUMBER].astype(np.int64))
 
     @property
     def element_count(self) -> int:
         """Elements ever used: their indices are smaller."""
-        return int(self._store.counts[USED])
+        return int(self._store.arrays.counts[USED])
 
     def _used(self) -> Indices:
         """Return the indices of the elements that are no spare ones."""
-        return np.flatnonzero(self._store.elements[: self.element_count, NUMBER] > 0.0)
+        return np.flatnonzero(self._store.arrays.elements[: self.element_count, NUMBER] > 0.0)
 
     def _corners(self, blocks: Indices) -> Indices:
         """Return the first voxels (n, 3) of ``blocks`` (n,)."""
-        keys = self._store.blocks[blocks, KEY]
+        keys = self._store.arrays.blocks[blocks, KEY]
         return np.asarray(((keys[:, None] >> (42, 21, 0) & 0x1FFFFF) - (1 << 20)) * EDGE)
 
 

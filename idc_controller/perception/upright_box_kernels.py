@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Cells, Indices, Links
+from idc_controller.arrays import Array, Indices
 from idc_controller.compiled import inlined, kernel
 from idc_controller.perception.voxel_kernels import (
     EDGE,
@@ -18,7 +18,9 @@ from idc_controller.perception.voxel_kernels import (
     LOW,
     MEAN,
     POINTS,
+    VOXELS,
     WEIGHT,
+    Voxels,
     cell_index,
     element_at,
     element_voxel,
@@ -28,42 +30,29 @@ from idc_controller.perception.voxel_kernels import (
 )
 
 
-@kernel(
-    "void(int64[:, ::1], int32[:, ::1], int64[:, ::1], int32[:, ::1], float64[:, ::1], int64[::1], float64[::1],"
-    " float64, float64[:, ::1])"
-)
-def cover_points(
-    table: Indices,
-    pages: Links,
-    blocks: Indices,
-    links: Links,
-    elements: Array,
-    indices: Indices,
-    sigmas: Array,
-    tolerance: float,
-    bounds: Array,
-) -> None:
+@kernel("void(Voxels, int64[::1], float64[::1], float64, float64[:, ::1])", Voxels=VOXELS)
+def cover_points(voxels: Voxels, indices: Indices, sigmas: Array, tolerance: float, bounds: Array) -> None:
     """Write the bounds within which the true surface in the voxels of some elements lies into ``bounds`` (E, 6).
 
     Bounds of the measured points, moved outwards by as many standard deviations as the number of scans that hit the
     surface there requires: inwards, towards the mean, where many scans make it certain that noise has spread them.
 
     Args:
-        table, pages, blocks, links, elements: see ``voxel_kernels``.
+        voxels: of the map.
         indices: of the elements (n,).
         sigmas: standard deviations for 1, 2, ... scans (s,).
         tolerance: added on all sides (m).
         bounds: to be written to.
     """
-    mean = np.empty(3)
+    elements, mean = voxels.elements, np.empty(3)
     for e in indices:
-        x, y, z = element_voxel(blocks, elements[e])
+        x, y, z = element_voxel(voxels, elements[e])
         hits = 0.0
         mean[:] = 0.0
         for i in range(x - 1, x + 2):
             for j in range(y - 1, y + 2):
                 for k in range(z - 1, z + 2):
-                    other = element_at(table, pages, links, i, j, k)
+                    other = element_at(voxels, i, j, k)
                     if other >= 0:
                         hits += elements[other, HITS]
                         for axis in range(3):
@@ -84,13 +73,12 @@ def cover_points(
 
 @inlined
 def _gaps_of_block(
-    blocks: Indices, cells: Cells, links: Links, block: int, box: Array, reach: Array, size: float, free_passes: int,
-    found: Array, count: int,
-) -> int:  # fmt: skip
+    voxels: Voxels, block: int, box: Array, reach: Array, size: float, free_passes: int, found: Array, count: int
+) -> int:
     """Write the gaps of one block into ``found`` from row ``count`` on; return how many there are then."""
-    if blocks[block, FREE_CELLS] == 0:
+    if voxels.blocks[block, FREE_CELLS] == 0:
         return count
-    key = blocks[block, KEY]
+    key = voxels.blocks[block, KEY]
     x0, y0, z0 = key_corner(key, 0), key_corner(key, 1), key_corner(key, 2)
     for x in range(max(x0, voxel(box[0] - reach[0], size)), min(x0 + EDGE, voxel(box[0] + reach[0], size) + 1)):
         for y in range(max(y0, voxel(box[1] - reach[1], size)), min(y0 + EDGE, voxel(box[1] + reach[1], size) + 1)):
@@ -99,7 +87,7 @@ def _gaps_of_block(
                 continue
             for z in range(max(z0, voxel(box[2] - reach[2], size)), min(z0 + EDGE, voxel(box[2] + reach[2], size) + 1)):
                 cell = cell_index(x, y, z)
-                if cells[block, cell] != free_passes or links[block, cell] & 255:
+                if voxels.cells[block, cell] != free_passes or voxels.links[block, cell] & 255:
                     continue
                 if abs((z + 0.5) * size - box[2]) > box[5]:
                     continue
@@ -110,26 +98,12 @@ def _gaps_of_block(
     return count
 
 
-@kernel(
-    "float64[:, ::1](int64[:, ::1], int32[:, ::1], int64[:, ::1], uint8[:, ::1], int32[:, ::1], int64[::1],"
-    " float64[::1], float64, int64, int64)"
-)
-def gaps_within(
-    table: Indices,
-    pages: Links,
-    blocks: Indices,
-    cells: Cells,
-    links: Links,
-    among: Indices,
-    box: Array,
-    size: float,
-    free_passes: int,
-    most: int,
-) -> Array:
+@kernel("float64[:, ::1](Voxels, int64[::1], float64[::1], float64, int64, int64)", Voxels=VOXELS)
+def gaps_within(voxels: Voxels, among: Indices, box: Array, size: float, free_passes: int, most: int) -> Array:
     """Return the middles (n, 3) of the gaps in a box: voxels seen free, with no point in the 27 voxels about them.
 
     Args:
-        table, pages, blocks, cells, links: see ``voxel_kernels``.
+        voxels: of the map.
         among: blocks that are searched; none: all that the box reaches into.
         box: (8,).
         size: edge of a voxel (m).
@@ -143,12 +117,12 @@ def gaps_within(
     if among.shape[0]:
         for block in among:
             if count < most:
-                count = _gaps_of_block(blocks, cells, links, block, box, reach, size, free_passes, found, count)
+                count = _gaps_of_block(voxels, block, box, reach, size, free_passes, found, count)
         return found[:count].copy()
     for x in range(voxel(box[0] - reach[0], size) >> 3, (voxel(box[0] + reach[0], size) >> 3) + 1):
         for y in range(voxel(box[1] - reach[1], size) >> 3, (voxel(box[1] + reach[1], size) >> 3) + 1):
             for z in range(voxel(box[2] - reach[2], size) >> 3, (voxel(box[2] + reach[2], size) >> 3) + 1):
-                block = find_block(table, pages, x << 3, y << 3, z << 3)
+                block = find_block(voxels, x << 3, y << 3, z << 3)
                 if block >= 0 and count < most:
-                    count = _gaps_of_block(blocks, cells, links, block, box, reach, size, free_passes, found, count)
+                    count = _gaps_of_block(voxels, block, box, reach, size, free_passes, found, count)
     return found[:count].copy()

@@ -1,25 +1,44 @@
-"""Sparse voxels: blocks of 8 x 8 x 8 in pages of 16 x 16 x 16, compiled; the arrays that the map's kernels share.
-
-- ``table`` (2^k, 2): hash table of the pages by open addressing, key and number; key -1: empty.
-- ``pages`` (P, 4096): number of each block of a page, -1: none. A ray stays in few pages, which the cache holds.
-- ``blocks`` (B, 4): key of a block; whether it has changed (bits :data:`SURFACE` and :data:`FREE`); its voxels that
-  were seen free; its voxels with points.
-- ``cells`` (B, 512): one byte a voxel: how many rays have passed, up to as many as make it seen free, and
-  :data:`HELD`, if it holds points. Small, as every ray reads some forty of them.
-- ``links`` (B, 512): in bits 0 to 7 how many of the 27 voxels about a voxel hold points, above that the index of its
-  surface element plus one (0: it holds no point).
-- ``elements`` (E, COLUMNS): what is known of the points in a voxel.
-- ``counts`` (5,): blocks, elements ever used, first spare element plus one, serial number of the last element,
-  pages.
-"""
+"""Sparse voxels: blocks of 8 x 8 x 8 in pages of 16 x 16 x 16, compiled; the arrays that the map's kernels share."""
 
 import math
+from typing import NamedTuple
 
-from idc_controller.arrays import Array, Indices, Links
+from numba.core import types
+
+from idc_controller.arrays import Array, Cells, Indices, Links
 from idc_controller.compiled import inlined
 
-ARRAYS = "int64[:, ::1], int32[:, ::1], int64[:, ::1], uint8[:, ::1], int32[:, ::1], float64[:, ::1], int64[::1]"
-"""Types of table, pages, blocks, cells, links, elements and counts in the signature of a kernel."""
+
+class Voxels(NamedTuple):
+    """What a standing map knows of space."""
+
+    table: Indices
+    """Hash table of the pages by open addressing, key and number (2^k, 2); key -1: empty."""
+    pages: Links
+    """Number of each block of a page (P, 4096), -1: none. A ray stays in few pages, which the cache holds."""
+    blocks: Indices
+    """Key of a block; whether it has changed (bits :data:`SURFACE` and :data:`FREE`); its voxels that were seen free;
+    its voxels with points (B, 4)."""
+    cells: Cells
+    """One byte a voxel (B, 512): how many rays have passed, up to as many as make it seen free, and :data:`HELD`, if it
+    holds points. Small, as every ray reads some forty of them."""
+    links: Links
+    """In bits 0 to 7 how many of the 27 voxels about a voxel hold points, above that the index of its surface element
+    plus one (0: it holds no point) (B, 512)."""
+    elements: Array
+    """What is known of the points in a voxel (E, COLUMNS)."""
+    counts: Indices
+    """Blocks, elements ever used, first spare element plus one, serial number of the last element, pages (5,)."""
+
+
+VOXELS = types.NamedTuple(
+    [types.Array(of, axes, "C") for of, axes in (
+        (types.int64, 2), (types.int32, 2), (types.int64, 2), (types.uint8, 2), (types.int32, 2), (types.float64, 2),
+        (types.int64, 1),
+    )],
+    Voxels,
+)  # fmt: skip
+"""Type of :class:`Voxels` in the signature of a kernel."""
 EDGE = 8
 """Voxels along the edge of a block."""
 CELLS = EDGE**3
@@ -112,60 +131,57 @@ def insert_page(table: Indices, key: int, number: int) -> None:
 
 
 @inlined
-def find_block(table: Indices, pages: Links, x: int, y: int, z: int) -> int:
+def find_block(voxels: Voxels, x: int, y: int, z: int) -> int:
     """Return the number of the block with voxel (x, y, z), -1 if there is none."""
-    page = find_page(table, page_key(x, y, z))
-    return -1 if page < 0 else int(pages[page, block_in_page(x, y, z)])
+    page = find_page(voxels.table, page_key(x, y, z))
+    return -1 if page < 0 else int(voxels.pages[page, block_in_page(x, y, z)])
 
 
 @inlined
-def page_of(table: Indices, counts: Indices, x: int, y: int, z: int) -> int:
+def page_of(voxels: Voxels, x: int, y: int, z: int) -> int:
     """Return the number of the page with voxel (x, y, z), a new one if there is none yet."""
     key = page_key(x, y, z)
-    page = find_page(table, key)
+    page = find_page(voxels.table, key)
     if page < 0:
-        page = counts[PAGES]
-        counts[PAGES] += 1
-        insert_page(table, key, page)
+        page = voxels.counts[PAGES]
+        voxels.counts[PAGES] += 1
+        insert_page(voxels.table, key, page)
     return int(page)
 
 
 @inlined
-def block_of(table: Indices, pages: Links, blocks: Indices, counts: Indices, x: int, y: int, z: int) -> int:
+def block_of(voxels: Voxels, x: int, y: int, z: int) -> int:
     """Return the number of the block with voxel (x, y, z), a new one if there is none yet."""
-    page, place = page_of(table, counts, x, y, z), block_in_page(x, y, z)
+    page, place, pages, counts = page_of(voxels, x, y, z), block_in_page(x, y, z), voxels.pages, voxels.counts
     if pages[page, place] < 0:
         pages[page, place] = counts[BLOCKS]
-        blocks[counts[BLOCKS], KEY] = block_key(x, y, z)
+        voxels.blocks[counts[BLOCKS], KEY] = block_key(x, y, z)
         counts[BLOCKS] += 1
     return int(pages[page, place])
 
 
 @inlined
-def element_at(table: Indices, pages: Links, links: Links, x: int, y: int, z: int) -> int:
+def element_at(voxels: Voxels, x: int, y: int, z: int) -> int:
     """Return the index of the element of voxel (x, y, z), -1 where there is none."""
-    block = find_block(table, pages, x, y, z)
-    return -1 if block < 0 else int(links[block, cell_index(x, y, z)] >> 8) - 1
+    block = find_block(voxels, x, y, z)
+    return -1 if block < 0 else int(voxels.links[block, cell_index(x, y, z)] >> 8) - 1
 
 
 @inlined
-def element_voxel(blocks: Indices, element: Array) -> tuple[int, int, int]:
+def element_voxel(voxels: Voxels, element: Array) -> tuple[int, int, int]:
     """Return the voxel of an element."""
-    key, cell = blocks[int(element[BLOCK]), KEY], int(element[CELL])
+    key, cell = voxels.blocks[int(element[BLOCK]), KEY], int(element[CELL])
     return key_corner(key, 0) + (cell >> 6), key_corner(key, 1) + (cell >> 3 & 7), key_corner(key, 2) + (cell & 7)
 
 
 @inlined
-def add_near(
-    table: Indices, pages: Links, blocks: Indices, links: Links, counts: Indices, element: Array, change: int
-) -> None:
+def add_near(voxels: Voxels, element: Array, change: int) -> None:
     """Add ``change`` to the number of voxels with points about each of the 27 voxels about an ``element``."""
-    x, y, z = element_voxel(blocks, element)
+    x, y, z = element_voxel(voxels, element)
     for i in range(x - 1, x + 2):
         for j in range(y - 1, y + 2):
             for k in range(z - 1, z + 2):
-                block = block_of(table, pages, blocks, counts, i, j, k)
-                links[block, cell_index(i, j, k)] += change
+                voxels.links[block_of(voxels, i, j, k), cell_index(i, j, k)] += change
 
 
 @inlined

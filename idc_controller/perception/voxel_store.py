@@ -5,26 +5,28 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from idc_controller.arrays import Array, Cells, Indices, Links
+from idc_controller.arrays import Array
 from idc_controller.perception.return_kernels import capacity_for, enter_pages
-from idc_controller.perception.voxel_kernels import BLOCKS, CELLS, COLUMNS, EDGE, PAGE_BLOCKS, PAGES, USED
+from idc_controller.perception.voxel_kernels import BLOCKS, CELLS, COLUMNS, EDGE, PAGE_BLOCKS, PAGES, USED, Voxels
 
 _FIRST_PAGES, _FIRST_BLOCKS, _FIRST_ELEMENTS = 16, 4096, 4096
 
 
 class VoxelStore:
-    """The arrays that :mod:`idc_controller.perception.voxel_kernels` describes."""
+    """The :class:`~idc_controller.perception.voxel_kernels.Voxels` of a map."""
 
     def __init__(self, voxel: float) -> None:
         """``voxel``: edge of a voxel (m)."""
         self._block = EDGE * voxel
-        self.table: Indices = np.full((4 * _FIRST_PAGES, 2), -1)
-        self.pages: Links = np.full((_FIRST_PAGES, PAGE_BLOCKS), -1, dtype=np.int32)
-        self.blocks: Indices = np.zeros((_FIRST_BLOCKS, 4), dtype=np.int64)
-        self.cells: Cells = np.zeros((_FIRST_BLOCKS, CELLS), dtype=np.uint8)
-        self.links: Links = np.zeros((_FIRST_BLOCKS, CELLS), dtype=np.int32)
-        self.elements: Array = np.zeros((_FIRST_ELEMENTS, COLUMNS))
-        self.counts: Indices = np.zeros(5, dtype=np.int64)
+        self.arrays = Voxels(
+            table=np.full((4 * _FIRST_PAGES, 2), -1),
+            pages=np.full((_FIRST_PAGES, PAGE_BLOCKS), -1, dtype=np.int32),
+            blocks=np.zeros((_FIRST_BLOCKS, 4), dtype=np.int64),
+            cells=np.zeros((_FIRST_BLOCKS, CELLS), dtype=np.uint8),
+            links=np.zeros((_FIRST_BLOCKS, CELLS), dtype=np.int32),
+            elements=np.zeros((_FIRST_ELEMENTS, COLUMNS)),
+            counts=np.zeros(5, dtype=np.int64),
+        )
 
     def reserve(self, origin: Array, returns: Array, free: Array) -> None:
         """Reserve capacity for all that a scan from ``origin`` (3,) can add.
@@ -32,17 +34,16 @@ class VoxelStore:
         ``returns`` (n, 3) and ends of ``free`` rays (m, 3), NED (m).
         """
         blocks, pages = capacity_for(origin, returns, free, self._block)
-        count = int(self.counts[PAGES])
-        if count + pages > len(self.pages):
-            self.pages = _grown(self.pages, count + pages, -1)
-            self.table = np.full((4 << (len(self.pages) - 1).bit_length(), 2), -1)
-            enter_pages(self.table, self.pages, self.blocks, count)
-        if self.counts[BLOCKS] + blocks > len(self.blocks):
-            rows = int(self.counts[BLOCKS]) + blocks
-            self.blocks, self.cells = _grown(self.blocks, rows), _grown(self.cells, rows)
-            self.links = _grown(self.links, rows)
-        if self.counts[USED] + len(returns) > len(self.elements):
-            self.elements = _grown(self.elements, int(self.counts[USED]) + len(returns))
+        v, number = self.arrays, self.arrays.counts.tolist()
+        if number[PAGES] + pages > len(v.pages):
+            grown = _grown(v.pages, number[PAGES] + pages, -1)
+            v = v._replace(pages=grown, table=np.full((4 << (len(grown) - 1).bit_length(), 2), -1))
+            enter_pages(v.table, v.pages, v.blocks, number[PAGES])
+        if (rows := number[BLOCKS] + blocks) > len(v.blocks):
+            v = v._replace(blocks=_grown(v.blocks, rows), cells=_grown(v.cells, rows), links=_grown(v.links, rows))
+        if (rows := number[USED] + len(returns)) > len(v.elements):
+            v = v._replace(elements=_grown(v.elements, rows))
+        self.arrays = v
 
 
 def _grown(rows: NDArray[Any], count: int, value: int = 0) -> NDArray[Any]:

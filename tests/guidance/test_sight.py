@@ -181,12 +181,10 @@ def test_unseen_cells_are_those_of_the_plain_formula(seed):
     path = np.linspace([0.0, 0.0, -1.0], [4.5, 1.0, -2.0], 30)
     body = np.array([1.2, 1.0, 0.8, 0.4])
     before, middles = seen.unseen(path, body, 10_000)
-    arrays = seen._store
     found = np.empty((10_000, 4))
     plain = unseen_cells.py_func(
-        arrays.table, arrays.pages, arrays.cells, arrays.links, path, body, settings.voxel, settings.sight_width,
-        settings.sight_rays, found,
-    )  # fmt: skip
+        seen._store.arrays, path, body, settings.voxel, settings.sight_width, settings.sight_rays, found
+    )
     assert plain == len(before) > 0
     np.testing.assert_array_equal(found[:plain, 0], before)
     np.testing.assert_array_equal(found[:plain, 1:], middles)
@@ -216,8 +214,7 @@ def test_way_behind_a_wall_is_hidden():
     path, heights = np.linspace([0.5, 0.0, 0.0], [6.0, 0.0, 0.0], 23), np.zeros(1)
     index = seen.first_hidden(path, np.zeros((1, 3)), heights)
     assert 3.0 <= path[index, 0] <= 3.8
-    v = seen._store
-    plain = first_hidden.py_func(v.table, v.pages, v.cells, path, np.zeros((1, 3)), heights, 0.25)
+    plain = first_hidden.py_func(seen._store.arrays, path, np.zeros((1, 3)), heights, 0.25)
     assert plain == index
     # Another sensor sees round it.
     assert seen.first_hidden(path, np.array([[0.0, 0.0, 0.0], [4.5, 5.0, 0.0]]), heights) == len(path)

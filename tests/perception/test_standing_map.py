@@ -201,11 +201,11 @@ def test_returns_of_what_moves_leave_no_points_but_free_what_they_pass():
 def test_memory_follows_the_space_that_was_seen():
     standing, sensor = StandingMap(), Sensor(np.random.default_rng(6), rays=200)
     fill(standing, sensor, [], (0.0, 0.0, -4.0), 0.0, 20.0)
-    blocks = standing._store.counts[0]
+    blocks = standing._store.arrays.counts[0]
     # A ball of 11 m radius in blocks of 2 m, all that it cuts included.
     assert blocks < 4.19 * 13.0**3 / 8.0
     fill(standing, sensor, [], (0.0, 0.0, -4.0), 20.0, 30.0)
-    assert standing._store.counts[0] < 1.2 * blocks
+    assert standing._store.arrays.counts[0] < 1.2 * blocks
 
 
 def test_map_keeps_what_it_holds_when_its_arrays_grow():
