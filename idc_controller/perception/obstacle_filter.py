@@ -50,7 +50,8 @@ class ObstacleFilter:
         self.frames = 0
         self._known = known
         self._scores: dict[str, float] = {}
-        self._scatter = scatter
+        self.scatter = scatter
+        """Variance of the points beyond their sensors' (m2)."""
         self._seen = SeenPoints(self.settings.seen_memory)
         self._uncovered = 0.0
         """Distance of the outermost of these outside of the fitted shape, which is then not the obstacle's (m)."""
@@ -58,11 +59,12 @@ class ObstacleFilter:
         if known is None and scatter == 0.0 and len(first.points) >= self.settings.points_min:
             # Before the kind is chosen: with much scatter a wall would fit anything.
             self._learn_scatter(min(self._fresh_fit(kind, first)[1].unexplained for kind in KINDS), share=1.0)
-        first = replace(first, scatter=self._scatter)
+        first = replace(first, scatter=self.scatter)
         predicted = self._surface.guess(first)
         fit = self._surface.fit(first, predicted, iterations=8)
         self._imm = MotionImm(models, first.time, fit.position, fit.variance)
-        self._manoeuvre = ManoeuvreDetector(first.time, self.settings.manoeuvre)
+        self.manoeuvre = ManoeuvreDetector(first.time, self.settings.manoeuvre)
+        """Whether its motion is that of the models."""
         self.frames = 1
         if known is None:
             self._scores["sphere"] = fit.score
@@ -91,11 +93,6 @@ class ObstacleFilter:
         return position + self._surface.offset, velocity, acceleration
 
     @property
-    def scatter(self) -> float:
-        """Variance of the points beyond their sensors' (m2)."""
-        return self._scatter
-
-    @property
     def is_static(self) -> bool:
         """Return whether it is static."""
         s, (_, velocity, _) = self.settings, self._imm.state
@@ -120,17 +117,7 @@ class ObstacleFilter:
     def advance(self, time: float) -> None:
         """Predict the motion to ``time`` (s); earlier times are passed over."""
         self._imm.advance(time)
-        self._manoeuvre.advance(time)
-
-    @property
-    def is_unpredictable(self) -> bool:
-        """Return whether its motion has proved to be none of the models' of late."""
-        return self._manoeuvre.is_unpredictable
-
-    @property
-    def is_predictable(self) -> bool:
-        """Return whether predictions of its motion have been compared, and proved right of late."""
-        return self._manoeuvre.is_predictable
+        self.manoeuvre.advance(time)
 
     @property
     def position_sigma(self) -> float:
@@ -145,7 +132,7 @@ class ObstacleFilter:
     def update(self, points: SurfacePoints) -> None:
         """Take one frame of points on this obstacle; a late one is moved to the present by the estimated motion."""
         imm, s = self._imm, self.settings
-        points = replace(points, scatter=self._scatter)
+        points = replace(points, scatter=self.scatter)
         if points.time > imm.time:
             imm.advance(points.time)
         elif points.time < imm.time:
@@ -153,8 +140,8 @@ class ObstacleFilter:
             _, velocity, _ = imm.state
             points = points.moved(velocity * late, imm.time, (s.late_speed * late) ** 2)
         fit = self._surface.fit(points, imm.state[0])
-        self._manoeuvre.advance(imm.time)
-        self._manoeuvre.add_innovation(imm.update(fit.position, fit.variance))
+        self.manoeuvre.advance(imm.time)
+        self.manoeuvre.add_innovation(imm.update(fit.position, fit.variance))
         self._compare_predictions()
         self.frames += 1
         if self._known is not None:
@@ -163,7 +150,7 @@ class ObstacleFilter:
             self._note(self.kind, fit.score)
             if self.frames <= s.every_frame_until or self.frames % s.every_frames == 0 or fit.score > s.retry_score:
                 self._consider_kinds(points, fit)
-            elif self._scatter > 0.0:
+            elif self.scatter > 0.0:
                 self._learn_scatter(fit.unexplained)
         self._remember(points)
 
@@ -179,20 +166,20 @@ class ObstacleFilter:
     def _compare_predictions(self) -> None:
         """Compare an earlier prediction with the state now, and predict anew."""
         position, velocity, _ = self._imm.state
-        self._manoeuvre.compare(position, velocity)
-        if self._manoeuvre.is_settled:
+        self.manoeuvre.compare(position, velocity)
+        if self.manoeuvre.is_settled:
             mean, covariance = self._imm.predict(np.array([self._imm.time + self.settings.manoeuvre.horizon]))
-            self._manoeuvre.add_prediction(mean[0], math.sqrt(float(np.trace(covariance[0]))))
+            self.manoeuvre.add_prediction(mean[0], math.sqrt(float(np.trace(covariance[0]))))
 
     def predict(self, times: Array) -> tuple[Array, Array]:
         """Return the predicted centre (K, 3) (NED, m) at ``times`` (K,) (s), and the growth of the body (K,) (m)."""
         mean, covariance = self._imm.predict(times)
-        unmodelled = self._manoeuvre.variance(np.maximum(np.asarray(times) - self._imm.time, 0.0))
+        unmodelled = self.manoeuvre.variance(np.maximum(np.asarray(times) - self._imm.time, 0.0))
         position = length_quantile(self.settings.outside_share, covariance + unmodelled[:, None, None] * np.eye(3))
         # Centre and size are of the same points: their errors may add.
-        extent = self._outside_sigmas * np.hypot(self._surface.size_sigma, np.sqrt(self._scatter))
+        extent = self._outside_sigmas * np.hypot(self._surface.size_sigma, np.sqrt(self.scatter))
         # Where points scatter, its motion is estimated late.
-        limit = self._manoeuvre.growth_limit(np.sqrt(self._scatter))
+        limit = self.manoeuvre.growth_limit(np.sqrt(self.scatter))
         growth = np.hypot(np.minimum(position + extent, limit), self._uncovered)
         return mean + self._surface.offset, growth
 
@@ -219,7 +206,7 @@ class ObstacleFilter:
         hysteresis = self.settings.hysteresis if self.frames > 1 else 0.0
         if self._complexity[best] < self._complexity[self.kind]:
             # With scatter all shapes fit alike, and the simplest is taken.
-            hysteresis *= points.noise**2 / (points.noise**2 + self._scatter)
+            hysteresis *= points.noise**2 / (points.noise**2 + self.scatter)
         if best != self.kind and cost[best] < cost[self.kind] - hysteresis:
             old = self._imm.state[0]
             self._surface, place = tried[best]
@@ -229,7 +216,7 @@ class ObstacleFilter:
     def _learn_scatter(self, unexplained: float, share: float | None = None) -> None:
         """Learn from points that lie on no shape that the sensors are worse than specified."""
         share = self.settings.smoothing if share is None else share
-        self._scatter = min(max(self._scatter + share * unexplained, 0.0), self.settings.scatter_max**2)
+        self.scatter = min(max(self.scatter + share * unexplained, 0.0), self.settings.scatter_max**2)
 
     def _fresh_fit(self, kind: str, points: SurfacePoints) -> tuple[Surface, Fit]:
         """Fit a surface of a kind to one frame alone."""

@@ -106,17 +106,10 @@ class _Scatter:
 class ScanPlacement:
     """Collects returns until all of a scan and its vehicle's pose are known. Times are the team's (s)."""
 
-    def __init__(
-        self,
-        sensors: SensorModel,
-        rays: SensorRays,
-        settings: ScanSettings = ScanSettings(),
-        poses: PoseHistory | None = None,
-        range_sensors: RangeSensors | None = None,
-    ) -> None:
+    def __init__(self, sensors: SensorModel, rays: SensorRays, settings: ScanSettings = ScanSettings()) -> None:
         self._sensors, self._rays, self._settings = sensors, rays, settings
-        self.poses = poses or PoseHistory(self._settings)
-        self.range_sensors = range_sensors or RangeSensors(sensors.range_noise > 0.0, self._settings)
+        self.poses = PoseHistory(settings)
+        self.range_sensors = RangeSensors(sensors.range_noise > 0.0, settings)
         self._waiting = defaultdict[int, dict[int, _Waiting]](dict)
         """Scans of each vehicle by stamp."""
         self._points_max = max(settings.points_max, _REMEMBERED * rays.pattern.rays)
@@ -241,17 +234,17 @@ class ScanPlacement:
         """
         points, directions = measured
         along, (anywhere, turning) = self._sensors.range_noise, sigmas
-        place = np.concatenate(pose)
-        returns, rays, (square, angle) = placed_returns(points, directions, place)
+        place, rotation = np.ascontiguousarray(pose[0]), np.ascontiguousarray(rotation_from_quaternion(pose[1]))
+        returns, rays, (square, angle) = placed_returns(points, directions, place, rotation)
         # Returns lie on the sensor's rays: how far they are off tells of an error that its noise is not.
         off = self._scatter[uav].add(float(square), len(returns))
         free = np.empty((0, 3))
         is_sure = scan.is_complete and not scan.is_spoilt and angle <= _OFF_RAY * self._rays.pattern.spacing
         if is_sure and scan.max_range is not None:
             reach = scan.max_range
-            free = free_ends(directions, rays, place, reach, self.free_height(reach, anywhere, turning))
-        up = -rotation_from_quaternion(pose[1])[:, 2]
-        return PlacedScan(scan.time, place[:3], returns, along, math.hypot(anywhere, off), turning, free, uav, up)
+            free = free_ends(directions, rays, place, rotation, reach, self.free_height(reach, anywhere, turning))
+        sigma = math.hypot(anywhere, off)
+        return PlacedScan(scan.time, place, returns, along, sigma, turning, free, uav, up=-rotation[:, 2])
 
     def _is_displaced(self, uav: int, time: float, points: Array, directions: Array) -> bool:
         """Take a vehicle's returns ``points`` (n, 3); return whether they are displaced from its rays."""

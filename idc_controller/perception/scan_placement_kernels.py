@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from idc_controller.arrays import Array, Indices, Mask
-from idc_controller.compiled import inlined, kernel
+from idc_controller.compiled import kernel
 
 _ON_RAY = 2e-4
 """Angle (rad) within which a return lies on a ray; far more than the rounding of the wire's 32-bit floats."""
@@ -60,31 +60,11 @@ def repeated_returns(points: Array, rays: Indices, count: int) -> Mask:
     return repeated
 
 
-@inlined
-def _rotation(pose: Array) -> Array:
-    """Return the attitude of a pose (7,), body to world (3, 3)."""
-    w, x, y, z = pose[3], pose[4], pose[5], pose[6]
-    rotation = np.empty((3, 3))
-    rotation[0, 0], rotation[0, 1], rotation[0, 2] = (
-        1.0 - 2.0 * (y * y + z * z),
-        2.0 * (x * y - w * z),
-        2.0 * (x * z + w * y),
-    )
-    rotation[1, 0], rotation[1, 1], rotation[1, 2] = (
-        2.0 * (x * y + w * z),
-        1.0 - 2.0 * (x * x + z * z),
-        2.0 * (y * z - w * x),
-    )
-    rotation[2, 0], rotation[2, 1], rotation[2, 2] = (
-        2.0 * (x * z - w * y),
-        2.0 * (y * z + w * x),
-        1.0 - 2.0 * (x * x + y * y),
-    )
-    return rotation
-
-
-@kernel("Tuple((float64[:, ::1], int64[::1], float64[::1]))(float64[:, ::1], float64[:, ::1], float64[::1])")
-def placed_returns(points: Array, directions: Array, pose: Array) -> tuple[Array, Indices, Array]:
+@kernel(
+    "Tuple((float64[:, ::1], int64[::1], float64[::1]))"
+    "(float64[:, ::1], float64[:, ::1], float64[::1], float64[:, ::1])"
+)
+def placed_returns(points: Array, directions: Array, place: Array, rotation: Array) -> tuple[Array, Indices, Array]:
     """Return the places of returns (k, 3) (NED, m), repeated ones once, their rays (k,), and how far they are off them.
 
     That is the mean square of their distances from the rays (m2), and the largest angle from one (rad) (2,).
@@ -92,17 +72,18 @@ def placed_returns(points: Array, directions: Array, pose: Array) -> tuple[Array
     Args:
         points: returns in the body frame (n, 3) (m), finite and not 0.
         directions: of the rays (m, 3) as in :func:`rays_of_returns`.
-        pose: of the vehicle (7,): position (NED, m), attitude (body to world).
+        place: of the vehicle (3,), NED (m).
+        rotation: of the vehicle (3, 3), body to world.
     """
     rays, angles = rays_of_returns(points, directions)
     repeated = repeated_returns(points, rays, directions.shape[0])
-    rotation, places, off, count = _rotation(pose), np.empty(points.shape), np.zeros(2), 0
+    places, off, count = np.empty(points.shape), np.zeros(2), 0
     for i in range(points.shape[0]):
         if repeated[i]:
             continue
         x, y, z = points[i, 0], points[i, 1], points[i, 2]
         for k in range(3):
-            places[count, k] = pose[k] + (rotation[k, 0] * x + rotation[k, 1] * y + rotation[k, 2] * z)
+            places[count, k] = place[k] + (rotation[k, 0] * x + rotation[k, 1] * y + rotation[k, 2] * z)
         rays[count] = rays[i]
         off[0] += angles[i] * angles[i] * (x * x + y * y + z * z)
         off[1] = max(off[1], angles[i])
@@ -112,14 +93,15 @@ def placed_returns(points: Array, directions: Array, pose: Array) -> tuple[Array
     return places[:count].copy(), rays[:count].copy(), off
 
 
-@kernel("float64[:, ::1](float64[:, ::1], int64[::1], float64[::1], float64, float64)")
-def free_ends(directions: Array, rays: Indices, pose: Array, reach: float, height: float) -> Array:
+@kernel("float64[:, ::1](float64[:, ::1], int64[::1], float64[::1], float64[:, ::1], float64, float64)")
+def free_ends(directions: Array, rays: Indices, place: Array, rotation: Array, reach: float, height: float) -> Array:
     """Return the ends (k, 3) (NED, m) of the rays without a return.
 
     Args:
         directions: of all rays (m, 3), unit vectors in the body frame.
         rays: those with a return (n,).
-        pose: of the vehicle (7,): position (NED, m), attitude (body to world).
+        place: of the vehicle (3,), NED (m).
+        rotation: of the vehicle (3, 3), body to world.
         reach: range, at which they end (m).
         height: above the ground, at which they end as well (m).
     """
@@ -127,7 +109,7 @@ def free_ends(directions: Array, rays: Indices, pose: Array, reach: float, heigh
     is_free, ends, count = np.ones(m, np.bool_), np.empty((m, 3)), 0
     for i in range(rays.shape[0]):
         is_free[rays[i]] = False
-    above, rotation = -pose[2] - height, _rotation(pose)
+    above = -place[2] - height
     for i in range(m):
         if not is_free[i] or above <= 0.0:
             continue
@@ -135,6 +117,6 @@ def free_ends(directions: Array, rays: Indices, pose: Array, reach: float, heigh
         down = rotation[2, 0] * x + rotation[2, 1] * y + rotation[2, 2] * z
         length = min(reach, above / down) if down > 0.0 else reach
         for k in range(3):
-            ends[count, k] = pose[k] + length * (rotation[k, 0] * x + rotation[k, 1] * y + rotation[k, 2] * z)
+            ends[count, k] = place[k] + length * (rotation[k, 0] * x + rotation[k, 1] * y + rotation[k, 2] * z)
         count += 1
     return ends[:count].copy()

@@ -26,23 +26,16 @@ from idc_controller.perception.return_kernels import add_returns
 from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.sight_kernels import first_hidden, unseen_cells
 from idc_controller.perception.voxel_kernels import (
-    BLOCK,
     BLOCKS,
     BORN,
-    CELL,
     CHANGE,
     EDGE,
-    HIGH,
     HITS,
     KEY,
-    LOW,
     MEAN,
     NUMBER,
-    POINTS,
-    PROVEN,
     SURFACE,
     USED,
-    WEIGHT,
 )
 from idc_controller.perception.voxel_store import VoxelStore
 
@@ -56,20 +49,8 @@ class SurfaceElements(NamedTuple):
     """Index of each in the map (n,): used again once it is freed."""
     numbers: Indices
     """Serial number (n,): never used again."""
-    voxels: Indices
-    """Voxel along each axis (n, 3)."""
     means: Array
     """Mean of the points (n, 3)."""
-    low: Array
-    """Lower bounds of the points (n, 3)."""
-    high: Array
-    """Upper bounds (n, 3)."""
-    sigma: Array
-    """Standard deviation of one point, mean of the axes (n,)."""
-    hits: Array
-    """Scans that hit it (n,), not more than are remembered."""
-    standing: Mask
-    """Whether it counts as standing (n,): it appeared in unknown space, or has lasted."""
 
 
 class StandingMap:
@@ -169,10 +150,6 @@ class StandingMap:
             self._store.arrays, origin, returns, _sigmas(scan), s.voxel, s.free_passes, self._chi_squared
         )
 
-    def occupied(self) -> SurfaceElements:
-        """Return all surface elements."""
-        return self.elements(self._used())
-
     def take_changed_blocks(self) -> tuple[Indices, Indices, Mask]:
         """Return the blocks that changed since the last call.
 
@@ -193,18 +170,8 @@ class StandingMap:
 
     def elements(self, indices: Indices) -> SurfaceElements:
         """Return the surface elements with these ``indices`` (n,)."""
-        rows = self._store.arrays.elements[indices]
-        return SurfaceElements(
-            indices,
-            rows[:, NUMBER].astype(np.int64),
-            self._corners(rows[:, BLOCK].astype(np.int64)) + (rows[:, CELL].astype(np.int64)[:, None] >> (6, 3, 0) & 7),
-            rows[:, MEAN : MEAN + 3],
-            rows[:, LOW : LOW + 3],
-            rows[:, HIGH : HIGH + 3],
-            np.sqrt(rows[:, POINTS] / np.maximum(rows[:, WEIGHT], 1e-12)),
-            rows[:, HITS],
-            rows[:, PROVEN] == 1.0,
-        )
+        means = self._store.arrays.elements[indices, MEAN : MEAN + 3]
+        return SurfaceElements(indices, self.numbers(indices), means)
 
     def are_current(self, indices: Indices, numbers: Indices) -> Mask:
         """Return whether elements are still those with these serial ``numbers`` (n,)."""

@@ -155,7 +155,7 @@ class Track:
         """Return whether it moves, and its predictions have not proved right: it may be where it has been."""
         if self.filter is None or self.map_shape is not None or not self.has_moved:
             return False
-        return not self.filter.is_predictable
+        return not self.filter.manoeuvre.is_predictable
 
     def obstacles(self, times: Array, now: float) -> list[PredictedObstacle]:
         """Return what holds it at ``times`` (K,) as estimated at ``now`` (s).
@@ -171,7 +171,7 @@ class Track:
         count = len(times)
         region = PredictedObstacle(f"{self.name} region", shape, np.tile(centre, (count, 1)), np.zeros(count), True)
         place, _ = self.centre(now)
-        if self.filter.is_unpredictable and visited.holds(place, now - retention.visited_before):
+        if self.filter.manoeuvre.is_unpredictable and visited.holds(place, now - retention.visited_before):
             return [region]
         return [region, replace(self.predict(times, now), may_leave=True)]
 

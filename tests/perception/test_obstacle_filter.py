@@ -165,7 +165,7 @@ def tracked(motion, seed=0, until=9.0, radius=0.5, loss=0.0):
             np.linalg.norm(position - motion(time) - place),
             np.linalg.norm(velocity - (motion(time + 0.01) - motion(time - 0.01)) / 0.02),
             np.linalg.norm(mean[1] - motion(time + 1.0) - place), growth[0], growth[1],
-            track.is_predictable,
+            track.manoeuvre.is_predictable,
         ))  # fmt: skip
     return track, np.array(rows)
 

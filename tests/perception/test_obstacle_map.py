@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from flights import InProcessFlight, short_figure
 from obstacle_scene import HERE, Scene, box, map_of, moving_tracks, outside, pole, run, sphere, wall
+from range_scene import occupied
 
 from gcs.flight import stack
 from gcs.mission.model import Obstacle
@@ -115,7 +116,7 @@ def test_what_is_taken_away_is_freed_only_by_being_looked_through(sight):
     m, scene = map_of(), Scene(0)
 
     def held():
-        beside = np.maximum(np.abs(m.seen.map.occupied().means - [5.5, 0.0, -6.0]) - [0.0, 1.0, 1.0], 0.0)
+        beside = np.maximum(np.abs(occupied(m.seen.map).means - [5.5, 0.0, -6.0]) - [0.0, 1.0, 1.0], 0.0)
         return np.sum(np.linalg.norm(beside, axis=1) < 0.3)
 
     run(m, lambda t: [body, behind], 3.0, scene=scene, centre=around)

@@ -104,7 +104,9 @@ def test_returns_are_placed_once_with_their_distances_from_the_rays():
     rng, directions = np.random.default_rng(1), PATTERN.directions(3)
     points = rng.normal(size=(40, 3)) * 4.0
     points[7], points[30] = points[2], points[2]
-    places, rays, (square, angle) = placed_returns(points, directions, np.array([*HERE, *TILTED]))
+    places, rays, (square, angle) = placed_returns(
+        points, directions, np.array(HERE), np.ascontiguousarray(rotation_from_quaternion(TILTED))
+    )
     kept = np.delete(points, [7, 30], axis=0)
     expected_rays, angles = brute_rays(kept, directions)
     np.testing.assert_allclose(places, HERE + kept @ rotation_from_quaternion(TILTED).T, atol=1e-12)
@@ -124,15 +126,15 @@ def test_covariances_are_those_of_noise_along_the_ray_and_of_the_pose():
 
 
 def test_free_rays_end_at_the_range_and_above_the_ground():
-    directions, rotation = PATTERN.directions(5), rotation_from_quaternion(TILTED)
+    directions, rotation = PATTERN.directions(5), np.ascontiguousarray(rotation_from_quaternion(TILTED))
     hit = np.arange(0, 500, 7)
-    ends = free_ends(directions, hit, np.array([*HERE, *TILTED]), 10.0, 0.4)
+    ends = free_ends(directions, hit, np.array(HERE), rotation, 10.0, 0.4)
     world = np.delete(directions, hit, axis=0) @ rotation.T
     with np.errstate(divide="ignore"):
         lengths = np.where(world[:, 2] > 0.0, np.minimum((6.0 - 0.4) / world[:, 2], 10.0), 10.0)
     np.testing.assert_allclose(ends, HERE + lengths[:, None] * world, atol=1e-9)
     assert ends[:, 2].max() <= -0.4 + 1e-9
-    assert len(free_ends(directions, hit, np.array([0.0, 0.0, -0.3, *TILTED]), 10.0, 0.4)) == 0
+    assert len(free_ends(directions, hit, np.array([0.0, 0.0, -0.3]), rotation, 10.0, 0.4)) == 0
 
 
 # Scans

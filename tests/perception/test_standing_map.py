@@ -5,11 +5,12 @@ from functools import cache
 
 import numpy as np
 import pytest
-from range_scene import Box, Pole, Sensor, Sphere, is_occupied, is_seen_free
+from range_scene import Box, Pole, Sensor, Sphere, is_occupied, is_seen_free, occupied
 
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.standing_map import StandingMap
+from idc_controller.perception.voxel_kernels import HIGH, LOW
 
 SETTINGS = StandingMapSettings()
 PERIOD = 0.1
@@ -52,11 +53,11 @@ def test_no_point_that_was_hit_is_lost_while_it_stands(bodies):
     standing, sensor = StandingMap(), Sensor(np.random.default_rng(1), ground=0.0)
     hits = fill(standing, sensor, bodies, (0.0, 0.0, -4.0), 0.0, 5.0)
     assert len(hits) > 200
-    elements = standing.occupied()
+    bounds = standing._store.arrays.elements[occupied(standing).indices, LOW : HIGH + 3]
     lost = hits[~is_occupied(standing, hits)]
     assert len(lost) < 0.03 * len(hits)
     checked = np.concatenate([lost, hits[:: 1 + len(hits) // 200]])
-    apart = np.maximum(np.maximum(elements.low[:, None] - checked, checked - elements.high[:, None]), 0.0)
+    apart = np.maximum(np.maximum(bounds[:, None, :3] - checked, checked - bounds[:, None, 3:]), 0.0)
     missed = np.linalg.norm(apart, axis=2).min(axis=0)
     # Noise of a return is 0.1 m at most, of its axes together.
     assert missed.max() < 0.3
@@ -67,10 +68,10 @@ def test_pole_passed_by_grazing_rays_only_is_never_freed():
     standing, sensor = StandingMap(), Sensor(np.random.default_rng(2), ground=0.0)
     pole = Pole((8.0, 0.0, -4.0), 0.1, 8.0)
     fill(standing, sensor, [pole], (0.0, 0.0, -4.0), 0.0, 10.0)
-    before = standing.occupied()
+    before = occupied(standing)
     path = lambda t: (16.0 * (t - 10.0) / 10.0, -6.0, -4.0)  # noqa: E731
     hits = fill(standing, sensor, [pole], path, 10.0, 20.0)
-    after = standing.occupied()
+    after = occupied(standing)
     lost = ~np.isin(before.numbers, after.numbers)
     assert (pole.distance(before.means[lost]) > 0.1).all() or lost.mean() < 0.3
     heights = np.unique(np.floor(hits[:, 2] / 0.5))
@@ -86,7 +87,7 @@ def test_obstacle_taken_away_is_freed_when_it_is_looked_through(body):
     fill(standing, sensor, [body, wall], around, 0.0, 5.0)
 
     def front():
-        means = standing.occupied().means
+        means = occupied(standing).means
         return np.sum((body.distance(means) < 0.4) & (means[:, 0] < 5.0))
 
     before = front()
@@ -128,7 +129,7 @@ def test_trail_of_a_moving_sphere_is_freed_behind_it():
     fill(standing, sensor, [wall, moving], (0.0, 0.0, -4.0), 0.0, 16.0)
 
     def trail():
-        return np.sum(np.abs(standing.occupied().means[:, 0] - 4.0) < 1.0)
+        return np.sum(np.abs(occupied(standing).means[:, 0] - 4.0) < 1.0)
 
     before = trail()
     assert before > 20
@@ -148,9 +149,9 @@ def test_scan_that_hits_a_voxel_frees_nothing_of_it():
 def test_nothing_is_forgotten_by_time_or_out_of_sight():
     standing, sensor = StandingMap(), Sensor(np.random.default_rng(4), ground=0.0)
     fill(standing, sensor, [Box((6.0, 0.0, -4.0), (1.0, 4.0, 4.0))], (0.0, 0.0, -4.0), 0.0, 2.0)
-    before = standing.occupied().numbers
+    before = occupied(standing).numbers
     fill(standing, sensor, [], (60.0, 0.0, -4.0), 1000.0, 1002.0)
-    assert np.isin(before, standing.occupied().numbers).all()
+    assert np.isin(before, occupied(standing).numbers).all()
 
 
 SEEN = 12.0  # s for which what stands is seen before the sphere moves past
@@ -216,11 +217,11 @@ def test_map_keeps_what_it_holds_when_its_arrays_grow():
             standing.add(PlacedScan(0.0, point + np.array([8.0, 0.3, 0.2]), point[None], 0.05, 0.03, 0.009))
     assert is_occupied(standing, points).all()
     assert is_seen_free(standing, points + np.array([4.0, 0.15, 0.1])).all()
-    assert len(standing.occupied().indices) == len(points)
+    assert len(occupied(standing).indices) == len(points)
 
 
 def test_returns_that_are_no_numbers_are_rejected():
     standing = StandingMap()
     returns = np.array([[3.0, 0.0, 0.0], [np.nan, 0.0, 0.0], [np.inf, 0.0, 0.0]])
     standing.add(PlacedScan(0.0, np.zeros(3), returns, 0.05, 0.03, 0.009))
-    assert len(standing.occupied().indices) == 1
+    assert len(occupied(standing).indices) == 1

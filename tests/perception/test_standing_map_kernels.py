@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from range_scene import is_occupied, is_seen_free
+from range_scene import is_occupied, is_seen_free, occupied
 
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import StandingMapSettings
@@ -72,8 +72,8 @@ def test_gaps_are_voxels_in_the_box_that_were_seen_free_two_voxels_off_all_point
     box = np.array([0.3, -0.2, 0.1, 1.7, 0.9, 1.1, math.cos(0.4), math.sin(0.4)])
     voxels = np.stack(np.meshgrid(*[np.arange(-12, 12)] * 3), axis=-1).reshape(-1, 3)
     middles = (voxels + 0.5) * SIZE
-    occupied = standing.occupied().voxels
-    near = (np.abs(voxels[:, None] - occupied).max(axis=2) <= 1).any(axis=1)
+    hit = np.floor(occupied(standing).means / SIZE).astype(int)
+    near = (np.abs(voxels[:, None] - hit).max(axis=2) <= 1).any(axis=1)
     expected = middles[is_seen_free(standing, middles) & ~near & in_box(box, middles)]
     found = standing.gaps(box, 10_000)
     assert len(found) > 100

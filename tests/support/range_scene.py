@@ -138,6 +138,11 @@ def return_variance(scan):
     return own + scan.attitude_sigma**2 * square * (np.eye(3) - along)
 
 
+def occupied(standing):
+    """All surface elements of a standing map."""
+    return standing.elements(standing._used())
+
+
 def cells_at(standing, points):
     """What a standing map holds of the voxels with ``points`` (n, 3): rays that passed, with :data:`HELD` if hit."""
     store, voxels = standing._store.arrays, np.floor(points / standing.settings.voxel).astype(int)
