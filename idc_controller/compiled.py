@@ -19,6 +19,9 @@ from idc_controller import uncompiled
 Function = TypeVar("Function", bound=Callable[..., Any])
 _CONFIG: Any = numba_config
 
+VECTOR, MATRIX, CUBE = (f"Array(float64, {axes}, 'C', readonly=True)" for axes in (1, 2, 3))
+"""Types in the signature of a kernel: arrays that it only reads."""
+
 
 def kernel(signature: str, **named: Any) -> Callable[[Function], Function]:
     """Compile a function for one signature, e.g. ``"float64(float64[:], float64[:, ::1])"``.

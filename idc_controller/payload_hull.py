@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from idc_controller.arrays import Array
 from idc_controller.errors import ParameterError
-
-if TYPE_CHECKING:
-    import coal
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,15 +76,3 @@ class PayloadHull:
         edges = np.ptp(self.bounds, axis=0)
         is_box = len(self.vertices) == 8 and np.allclose(np.abs(self.vertices), edges / 2.0, rtol=0.0, atol=1e-9)
         return edges if is_box else None
-
-    def support(self, normals: Array) -> Array:
-        """Return the largest ``n . x`` over the level payload about its centre, for ``normals`` (K, 3) -> (K,)."""
-        return np.asarray((normals @ self.vertices.T).max(axis=1))
-
-    def geometry(self) -> coal.ShapeBase:
-        """Return the hull for distance queries, in the payload frame."""
-        import coal
-
-        vertices = coal.StdVec_Vec3s()
-        vertices.extend(list(self.vertices))
-        return coal.ConvexBase.convexHull(vertices, False, "")

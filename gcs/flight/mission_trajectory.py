@@ -99,7 +99,7 @@ class MissionTrajectory:
     def _figure(self, figure: Lissajous, time: float, here: Array) -> Trajectory:
         """Return the trajectory to the curve's beginning, along it, and back to ``here``."""
         curve = LissajousCurve(figure.amplitude, down=-figure.altitude)
-        begin = curve.by_phase(np.zeros(1), 0)[0][0]
+        begin = curve.at(np.zeros((1, 1)))[0, 0]
         limits = self._limits(self._motion.speed)
         there = WaypointTrajectory(here, [paths.Leg(begin, self._motion.speed)], limits, start=time)
         along_curve = curve_limits(self._motion)

@@ -16,6 +16,7 @@ from gcs.reproduce.plan import DESIGN_MASS, Plan
 from gcs.reproduce.scene import configuration, printed_reference, shaped_figure
 from gcs.reproduce.work import Results
 from idc_controller.model import nonlinear
+from idc_controller.model.linear import discretised
 from idc_controller.model.nonlinear import Inputs, SystemState
 from idc_controller.paper import printed_equations as printed
 from idc_controller.paper import state_space
@@ -79,8 +80,7 @@ def model_numbers() -> dict[str, Any]:
     A_small, B_small = state_space.minimal(p)
     T = state_space.embedding(p)
     modes, modes_small = (
-        state_space.uncontrollable_modes(*state_space.discretised(*pair, PERIOD))
-        for pair in ((A, B), (A_small, B_small))
+        state_space.uncontrollable_modes(*discretised(*pair, PERIOD)) for pair in ((A, B), (A_small, B_small))
     )
     G = linear_acceleration(p)[1]
     errors = [_errors_of(seed) for seed in range(_STATES)]
@@ -232,8 +232,8 @@ def matrices() -> dict[str, tuple[Array, Sequence[str], Sequence[str]]]:
     full, small, inputs = Layout.full(4).names(), Layout.minimal(4).names(), state_space.input_names(4)
     continuous, continuous_small = state_space.linearised(p), state_space.minimal(p)
     A, B, A_small, B_small = (
-        *state_space.discretised(*continuous, PERIOD),
-        *state_space.discretised(*continuous_small, PERIOD),
+        *discretised(*continuous, PERIOD),
+        *discretised(*continuous_small, PERIOD),
     )
     return {
         "A_continuous": (continuous[0], full, full), "B_continuous": (continuous[1], full, inputs),

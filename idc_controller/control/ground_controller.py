@@ -9,12 +9,12 @@ whole range of thrust; the payload's own error is left to the ground.
 """
 
 import numpy as np
-from scipy.linalg import expm, solve_discrete_are
+from scipy.linalg import solve_discrete_are
 
 from idc_controller.arrays import Array
 from idc_controller.control.settings import GroundControlSettings
 from idc_controller.control.tracker import TrackingOutput
-from idc_controller.model.linear import LinearModel
+from idc_controller.model.linear import LinearModel, discretised
 from idc_controller.trajectory.flatness import FlatReference
 
 
@@ -53,9 +53,6 @@ def pendulum_gain(model: LinearModel, uav: int, period: float, settings: GroundC
     """Return the regulator gain (5,) for one axis of one UAV."""
     A, B = pendulum_dynamics(model, uav, settings.design_share)
     Q, R = np.diag(settings.state), np.array([[settings.setpoint]])
-    block = np.zeros((6, 6))
-    block[:5, :5], block[:5, 5:] = A, B
-    step = expm(block * period)
-    A_k, B_k = step[:5, :5], step[:5, 5:]
+    A_k, B_k = discretised(A, B, period)
     P = solve_discrete_are(A_k, B_k, Q, R)
     return np.asarray(np.linalg.solve(R + B_k.T @ P @ B_k, B_k.T @ P @ A_k)[0])

@@ -35,11 +35,6 @@ class _Sample:
         """Return whether the motion was measured."""
         return not math.isnan(self.motion.item(0))
 
-    @property
-    def is_whole(self) -> bool:
-        """Return whether pose and motion were measured."""
-        return not (math.isnan(self.pose.item(0)) or math.isnan(self.motion.item(0)))
-
     def same_values(self, other: object) -> bool:
         """Return whether ``other`` is of the same kind and has the same values to the digit."""
         return type(other) is type(self) and _same(self.pose, other.pose) and _same(self.motion, other.motion)

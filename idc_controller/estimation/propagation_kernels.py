@@ -3,13 +3,9 @@
 import numpy as np
 
 from idc_controller.arrays import Array, Indices
-from idc_controller.compiled import inlined, kernel
+from idc_controller.compiled import CUBE, MATRIX, VECTOR, inlined, kernel
 
-_VECTOR, _MATRIX, _CUBE, _COLUMNS = (
-    f"Array({of}, {axes}, 'C', readonly=True)"
-    for of, axes in (("float64", 1), ("float64", 2), ("float64", 3), ("int64", 2))
-)
-"""Types of arrays that are only read."""
+_COLUMNS = "Array(int64, 2, 'C', readonly=True)"
 
 
 @inlined
@@ -34,7 +30,7 @@ def _state(x: Array, first: Array, columns: Indices, coefficients: Array, B: Arr
     return result
 
 
-@kernel(f"float64[::1]({_VECTOR}, {_MATRIX}, {_MATRIX}, {_VECTOR}, {_COLUMNS}, {_MATRIX}, {_MATRIX}, {_VECTOR})")
+@kernel(f"float64[::1]({VECTOR}, {MATRIX}, {MATRIX}, {VECTOR}, {_COLUMNS}, {MATRIX}, {MATRIX}, {VECTOR})")
 def propagated_state(
     x: Array, dense: Array, push: Array, direction: Array, columns: Indices, coefficients: Array, B: Array, u: Array
 ) -> Array:
@@ -43,8 +39,8 @@ def propagated_state(
 
 
 @kernel(
-    f"Tuple((float64[::1], float64[:, ::1]))({_VECTOR}, {_MATRIX}, {_MATRIX}, {_MATRIX}, {_VECTOR}, {_COLUMNS}, "
-    f"{_MATRIX}, {_MATRIX}, {_VECTOR}, {_MATRIX}, {_VECTOR}, {_VECTOR})"
+    f"Tuple((float64[::1], float64[:, ::1]))({VECTOR}, {MATRIX}, {MATRIX}, {MATRIX}, {VECTOR}, {_COLUMNS}, "
+    f"{MATRIX}, {MATRIX}, {VECTOR}, {MATRIX}, {VECTOR}, {VECTOR})"
 )
 def propagated(
     x: Array, P: Array, dense: Array, push: Array, direction: Array, columns: Indices, coefficients: Array, B: Array,
@@ -152,7 +148,7 @@ def add_variances(P: Array, first: int, uavs: Indices, variance: float) -> None:
             P[state, state] += variance
 
 
-@kernel(f"float64[::1]({_VECTOR}, {_VECTOR}, {_VECTOR}, {_COLUMNS}, {_MATRIX}, {_MATRIX}, int64, int64)")
+@kernel(f"float64[::1]({VECTOR}, {VECTOR}, {VECTOR}, {_COLUMNS}, {MATRIX}, {MATRIX}, int64, int64)")
 def defect(
     before: Array, after: Array, u: Array, columns: Indices, coefficients: Array, B: Array, first: int, end: int
 ) -> Array:
@@ -178,7 +174,7 @@ def defect(
     return result
 
 
-@kernel(f"boolean({_VECTOR}, {_MATRIX})")
+@kernel(f"boolean({VECTOR}, {MATRIX})")
 def are_finite(x: Array, P: Array) -> bool:
     """Return whether state (n,) and covariance (n, n) are numbers."""
     total = 0.0 * x  # zero times inf or nan is nan
@@ -190,7 +186,7 @@ def are_finite(x: Array, P: Array) -> bool:
 
 @kernel(
     "Tuple((float64[:, ::1], float64[:, ::1], float64[:, ::1]))"
-    f"({_MATRIX}, {_MATRIX}, {_CUBE}, {_MATRIX}, {_CUBE}, float64, float64)"
+    f"({MATRIX}, {MATRIX}, {CUBE}, {MATRIX}, {CUBE}, float64, float64)"
 )
 def about_reference(
     x: Array, u: Array, payload: Array, on_payload: Array, on_uavs: Array, g: float, mass_excess: float

@@ -8,10 +8,7 @@ import math
 import numpy as np
 
 from idc_controller.arrays import Array, Indices, Mask
-from idc_controller.compiled import inlined, kernel
-
-_VECTOR, _MATRIX, _CUBE = (f"Array(float64, {axes}, 'C', readonly=True)" for axes in (1, 2, 3))
-"""Types of arrays that are only read."""
+from idc_controller.compiled import CUBE, MATRIX, VECTOR, inlined, kernel
 
 
 @inlined
@@ -102,9 +99,9 @@ def predicted(
 
 
 @kernel(
-    f"Tuple((float64[:, ::1], float64[::1], float64[:, ::1]))({_VECTOR}, int64[::1], boolean[::1], {_MATRIX}, {_CUBE}, "
-    f"{_MATRIX}, {_MATRIX}, int64, {_MATRIX}, {_VECTOR}, int64[:, ::1], {_MATRIX}, int64[::1], int64[::1], "
-    f"int64[::1], int64[::1], {_VECTOR}, {_MATRIX})"
+    f"Tuple((float64[:, ::1], float64[::1], float64[:, ::1]))({VECTOR}, int64[::1], boolean[::1], {MATRIX}, {CUBE}, "
+    f"{MATRIX}, {MATRIX}, int64, {MATRIX}, {VECTOR}, int64[:, ::1], {MATRIX}, int64[::1], int64[::1], "
+    f"int64[::1], int64[::1], {VECTOR}, {MATRIX})"
 )
 def innovations(
     values: Array, sources: Indices, is_position: Mask, reference: Array, payload: Array, q: Array, q_dot: Array,
@@ -140,7 +137,7 @@ def innovations(
 
 
 @kernel(
-    f"Tuple((float64[::1], float64[:, ::1], float64))({_MATRIX}, float64[::1], int64[:, ::1], float64[:, ::1], "
+    f"Tuple((float64[::1], float64[:, ::1], float64))({MATRIX}, float64[::1], int64[:, ::1], float64[:, ::1], "
     "float64[::1], float64)"
 )
 def corrected(

@@ -5,14 +5,11 @@ import math
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.compiled import kernel
-
-_VECTOR, _MATRIX = (f"Array(float64, {axes}, 'C', readonly=True)" for axes in (1, 2))
-"""Types of arrays of parameters, which are read only."""
+from idc_controller.compiled import MATRIX, VECTOR, kernel
 
 
 @kernel(
-    f"float64[:, ::1](float64[::1], float64[::1], float64[::1], float64[::1], {_MATRIX}, {_VECTOR})",
+    f"float64[:, ::1](float64[::1], float64[::1], float64[::1], float64[::1], {MATRIX}, {VECTOR})",
 )
 def vehicle_states(payload: Array, links: Array, thrusts: Array, thrusts_dot: Array, p: Array, l: Array) -> Array:
     """Return position, velocity, quaternion and body rates (N, 13) of the UAVs, heading north; NED, SI.

@@ -18,7 +18,6 @@ from idc_controller.geometry.shape import (
     PlanView,
     RoundedBox,
     Shape,
-    UprightBounds,
     Vector,
 )
 
@@ -26,8 +25,30 @@ if TYPE_CHECKING:
     import coal
 
 
+class _BoxBody:
+    """What a box is in its own frame, whatever its attitude."""
+
+    size: Vector
+
+    @property
+    def rounded_box(self) -> RoundedBox:
+        """The body itself."""
+        x, y, z = self.size
+        return RoundedBox(x / 2.0, y / 2.0, z / 2.0)
+
+    def geometry(self) -> coal.ShapeBase:
+        """Return the shape for distance queries, in its own frame."""
+        import coal
+
+        return coal.Box(*self.size)
+
+    def collision(self) -> CollisionGeometry:
+        """Return the shape for a physics engine, in its own frame."""
+        return CollisionGeometry("box", {"halfExtents": [edge / 2 for edge in self.size]})
+
+
 @dataclass(frozen=True)
-class Wall(Shape):
+class Wall(_BoxBody, Shape):
     """An upright box of edges ``size`` (x, y, z) (m), its x edge turned by ``yaw`` (rad) from north towards east."""
 
     size: Vector = field(metadata=LENGTH)
@@ -53,31 +74,9 @@ class Wall(Shape):
         edges = " x ".join(f"{edge:.4g}" for edge in self.size)
         return f"{edges} m, heading {math.degrees(self.yaw):.1f} deg"
 
-    def geometry(self) -> coal.ShapeBase:
-        """Return the shape for distance queries."""
-        import coal
-
-        return coal.Box(*self.size)
-
-    def collision(self) -> CollisionGeometry:
-        """Return the shape for a physics engine."""
-        return CollisionGeometry("box", {"halfExtents": [edge / 2 for edge in self.size]})
-
     def support(self, directions: Array) -> Array:
         """Largest ``direction . y`` over the body, for unit ``directions`` (..., 3) -> (...)."""
         return np.asarray(np.abs(directions @ self.rotation) @ (np.array(self.size) / 2.0))
-
-    @property
-    def rounded_box(self) -> RoundedBox:
-        """The body itself."""
-        x, y, z = self.size
-        return RoundedBox(x / 2.0, y / 2.0, z / 2.0)
-
-    @property
-    def upright_bounds(self) -> UprightBounds:
-        """The body itself."""
-        x, y, z = (edge / 2.0 for edge in self.size)
-        return UprightBounds(x, y, z, 0.0, 0.0, math.cos(self.yaw), math.sin(self.yaw))
 
     @property
     def plan_view(self) -> PlanView:
@@ -89,7 +88,7 @@ class Wall(Shape):
 
 
 @dataclass(frozen=True)
-class Box(OrientedShape):
+class Box(_BoxBody, OrientedShape):
     """A box of edges ``size`` (x, y, z) (m)."""
 
     size: Vector = field(metadata=LENGTH)
@@ -106,19 +105,3 @@ class Box(OrientedShape):
         """The corners (8, 3)."""
         signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
         return np.asarray(signs * np.array(self.size) / 2.0)
-
-    @property
-    def rounded_box(self) -> RoundedBox:
-        """The body itself."""
-        x, y, z = self.size
-        return RoundedBox(x / 2.0, y / 2.0, z / 2.0)
-
-    def geometry(self) -> coal.ShapeBase:
-        """Return the shape for distance queries, in its own frame."""
-        import coal
-
-        return coal.Box(*self.size)
-
-    def collision(self) -> CollisionGeometry:
-        """Return the shape for a physics engine, in its own frame."""
-        return CollisionGeometry("box", {"halfExtents": [edge / 2 for edge in self.size]})

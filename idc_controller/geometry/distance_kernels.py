@@ -41,19 +41,6 @@ def distances_of_offsets(bodies: Array, offsets: Array) -> Array:
     return distance
 
 
-@kernel("float64[:, ::1](float64[:, ::1], float64[:, ::1], float64[:, ::1])")
-def distances_of_points(bodies: Array, points: Array, centres: Array) -> Array:
-    """Return signed distances (B, n) (m) of ``points`` (n, 3) to ``bodies`` (B, 14) at ``centres`` (B, 3), world."""
-    count, n = centres.shape[0], points.shape[0]
-    distance = np.empty((count, n))
-    for b in range(count):
-        for i in range(n):
-            distance[b, i] = distance_to(
-                bodies, b, points[i, 0] - centres[b, 0], points[i, 1] - centres[b, 1], points[i, 2] - centres[b, 2]
-            )
-    return distance
-
-
 @kernel("float64[:, ::1](float64[:, ::1], float64[::1], float64[:, ::1], float64[:, ::1], int64[::1], float64)")
 def mean_distances_of_groups(
     bodies: Array, reach: Array, centres: Array, points: Array, starts: Indices, far: float

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from idc_controller.arrays import Array, Indices
+from idc_controller.geometry.formation_kernels import hull_points
 from idc_controller.parameters import SystemParameters
 from idc_controller.rotations import rotation_from_quaternion
 
@@ -22,27 +23,6 @@ _NO_AREA = 1e-12
 """Up to such an area (m2) a triangle between points on one plane of the hull is none."""
 _MOST_CORNERS = 16
 """Corners, at most, of a payload's hull that is planned with as it is: the rest of the linear search is for discs."""
-
-
-def formation_points(
-    corners: Array,
-    rims: Array,
-    payload_position_in_world: Array,
-    payload_quaternion: Array,
-    uav_position_in_world: Array,
-    uav_quaternion: Array,
-) -> Array:
-    """Return the points whose convex hull is the formation in a given state (C + N R, 3), NED (m).
-
-    Args:
-        corners: those of the payload, in its frame (C, 3) (m).
-        rims: points on the rim of a disc, in the frame of its UAV, (R, 3) or one set for each UAV (N, R, 3) (m).
-        payload_position_in_world, payload_quaternion: (3,) (m), w-first (4,), payload to world.
-        uav_position_in_world, uav_quaternion: (N, 3) (m), w-first (N, 4), body to world.
-    """
-    payload = corners @ rotation_from_quaternion(payload_quaternion).T + payload_position_in_world
-    discs = rims @ np.swapaxes(rotation_from_quaternion(uav_quaternion), -1, -2) + uav_position_in_world[:, None, :]
-    return np.vstack([payload, discs.reshape(-1, 3)])
 
 
 def outward_facets(points: Array) -> Indices:
@@ -82,26 +62,25 @@ class Formation:
         for triangle in outward_facets(self.hull_points(np.zeros((1, 3)))[0]):
             self._facets.append(coal.Triangle(*map(int, triangle)))
 
-    def levers(self, acceleration: Array) -> Array:
-        """``lever_i`` (K, N) (s2) for payload ``acceleration`` (K, 3)."""
-        return self.lengths / np.maximum(self.g - acceleration[:, 2:3], 0.2 * self.g)
-
-    def uav_offsets(self, acceleration: Array) -> Array:
-        """UAVs from the payload's centre (K, N, 3) (m)."""
-        offsets = np.repeat(self.hover_offsets[None], len(acceleration), axis=0)
-        offsets[:, :, :2] += self.levers(acceleration)[:, :, None] * acceleration[:, None, :2]
-        return offsets
-
     def hull_points(self, acceleration: Array) -> Array:
-        """Points about the payload's centre whose hull is the formation (K, P, 3) (m), rims coarsely."""
-        discs = self.uav_offsets(acceleration)[:, :, None, :] + self.rims
-        K = len(acceleration)
-        corners = np.repeat(self.corners[None], K, axis=0)
-        return np.concatenate([corners, discs.reshape(K, -1, 3)], axis=1)
+        """Points about the payload's centre whose hull is the formation (K, P, 3) (m), rims coarsely.
+
+        ``acceleration`` of the payload (K, 3).
+        """
+        return hull_points(
+            self.corners, self.rims, self.hover_offsets, self.lengths, self.g, np.ascontiguousarray(acceleration)
+        )
 
     def points_in_world(self, position: Array, quaternion: Array, uav_position: Array, uav_quaternion: Array) -> Array:
-        """Return :func:`formation_points` of this formation, rims coarsely."""
-        return formation_points(self.corners, self.rims, position, quaternion, uav_position, uav_quaternion)
+        """Return the points whose hull is the formation in a given state (P, 3), NED (m), rims coarsely.
+
+        Args:
+            position, quaternion: of the payload, (3,) (m) and w-first (4,), payload to world.
+            uav_position, uav_quaternion: (N, 3) (m) and w-first (N, 4), body to world.
+        """
+        payload = self.corners @ rotation_from_quaternion(quaternion).T + position
+        discs = self.rims @ np.swapaxes(rotation_from_quaternion(uav_quaternion), -1, -2) + uav_position[:, None, :]
+        return np.vstack([payload, discs.reshape(-1, 3)])
 
     def hull(self, points: Array) -> coal.ShapeBase:
         """The hull of ``points`` (P, 3) for distance queries, until the next call."""

@@ -76,15 +76,15 @@ class FreeSpace:
         """Distance of the formation at each place to each obstacle (P, M); negative inside (m)."""
         return self._bodies.distance(places[:, None] - self.centres, self.formation) - self.growth
 
-    def is_free(self, places: Array, extra: float = 0.0) -> Mask:
-        """Return the places (P,) at which the formation keeps the margin, and ``extra`` (m) more, and all bounds."""
+    def is_free(self, places: Array) -> Mask:
+        """Return the places (P,) at which the formation keeps the margin and all bounds."""
         free = self.within_bounds(places)
         if len(self.centres):
-            free &= (self.clearance(places) >= self.margin + extra - TOUCHING).all(axis=1)
+            free &= (self.clearance(places) >= self.margin - TOUCHING).all(axis=1)
         return free
 
     def free_lattice(self, north: Array, east: Array, down: Array, extra: float) -> Mask:
-        """:meth:`is_free` at every combination of coordinates (X,), (Y,), (Z,) -> (X, Y, Z)."""
+        """:meth:`is_free`, ``extra`` (m) beyond the margin, at all combinations of (X,), (Y,), (Z,) -> (X, Y, Z)."""
         altitude = (-down >= self.lowest - TOUCHING) & (-down <= self.highest + TOUCHING)
         free = np.broadcast_to(altitude, (len(north), len(east), len(down))).copy()
         keep = self.margin + extra + self.growth - TOUCHING

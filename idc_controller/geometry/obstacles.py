@@ -12,11 +12,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from idc_controller.arrays import Array, Indices
-from idc_controller.geometry.distance_kernels import (
-    distances_of_offsets,
-    distances_of_points,
-    mean_distances_of_groups,
-)
+from idc_controller.geometry.distance_kernels import distances_of_offsets, mean_distances_of_groups
 from idc_controller.geometry.shape import ROW, Shape
 
 
@@ -92,10 +88,7 @@ class Bodies:
 
     def distance(self, points: Array, centres: Array) -> Array:
         """Signed distance (m) from ``points`` (n, 3) to the surfaces of bodies at ``centres`` (B, 3): (B, n)."""
-        distance = distances_of_points(self.rows, np.ascontiguousarray(points), np.ascontiguousarray(centres))
-        for i, shape in self.others:
-            distance[i] = shape.distance((points - centres[i]) @ shape.rotation)
-        return distance
+        return self.from_offsets(points - centres[:, None])
 
     def from_offsets(self, offsets: Array) -> Array:
         """Return the same for points relative to each body's centre (B, n, 3)."""

@@ -8,15 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.shape import (
-    LENGTH,
-    CollisionGeometry,
-    PlanView,
-    RoundedBox,
-    Shape,
-    UprightBounds,
-    Vector,
-)
+from idc_controller.geometry.shape import LENGTH, CollisionGeometry, PlanView, RoundedBox, Shape, Vector
 
 if TYPE_CHECKING:
     import coal
@@ -58,11 +50,6 @@ class Pole(Shape):
     def rounded_box(self) -> RoundedBox:
         """The body: a vertical line rounded horizontally."""
         return RoundedBox(0.0, 0.0, self.height / 2.0, radial=self.radius)
-
-    @property
-    def upright_bounds(self) -> UprightBounds:
-        """The body: a vertical line rounded horizontally."""
-        return UprightBounds(0.0, 0.0, self.height / 2.0, self.radius, 0.0, 1.0, 0.0)
 
     @property
     def plan_view(self) -> PlanView:

@@ -209,9 +209,11 @@ class Shape(ABC):
         return math.hypot(bounds.half_x, bounds.half_y) + bounds.radial + bounds.ball
 
     @property
-    @abstractmethod
     def upright_bounds(self) -> UprightBounds:
-        """The rounded upright box about the centre that holds the body."""
+        """The rounded upright box about the centre that holds the body: by default the body itself."""
+        box, yaw = self.rounded_box, self.columns.yaw
+        assert box is not None
+        return UprightBounds(*box, math.cos(yaw), math.sin(yaw))
 
     @property
     def half_height(self) -> float:

@@ -8,15 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.shape import (
-    LENGTH,
-    CollisionGeometry,
-    PlanView,
-    RoundedBox,
-    Shape,
-    UprightBounds,
-    Vector,
-)
+from idc_controller.geometry.shape import LENGTH, CollisionGeometry, PlanView, RoundedBox, Shape, Vector
 
 if TYPE_CHECKING:
     import coal
@@ -54,11 +46,6 @@ class Sphere(Shape):
     def rounded_box(self) -> RoundedBox:
         """The body: a point rounded in all directions."""
         return RoundedBox(0.0, 0.0, 0.0, ball=self.radius)
-
-    @property
-    def upright_bounds(self) -> UprightBounds:
-        """The body: a point rounded in all directions."""
-        return UprightBounds(0.0, 0.0, 0.0, 0.0, self.radius, 1.0, 0.0)
 
     @property
     def plan_view(self) -> PlanView:

@@ -17,16 +17,13 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from idc_controller.arrays import Array
-from idc_controller.errors import TrajectoryError
 from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.flight_area import FlightArea
-from idc_controller.geometry.free_space import FreeSpace, first_conflict
+from idc_controller.geometry.free_space import FreeSpace
 from idc_controller.geometry.shape import Shape
 from idc_controller.guidance.settings import DetourSettings
 from idc_controller.guidance.straighten import free_segments_from, straightened
 from idc_controller.trajectory.trajectory import point
-
-__all__ = ["BoundingCylinder", "Detour", "FreeSpace", "find_detour", "first_conflict"]
 
 Box = tuple[Array, Array]
 """Two opposite corners, NED (m)."""
@@ -65,7 +62,6 @@ def find_detour(
     highest: float = 15.0,
     growth: ArrayLike | None = None,
     area: FlightArea | None = None,
-    region: tuple[ArrayLike, ArrayLike] | None = None,
     names: Sequence[str] | None = None,
     settings: DetourSettings = DetourSettings(),
 ) -> Detour:
@@ -80,8 +76,6 @@ def find_detour(
             are, or will be, at one moment.
         lowest, highest: altitudes of the payload's centre (m, up).
         area: that must not be left, its edges among the obstacles; None: everywhere.
-        region: two opposite corners (3,) of the box to search; None: one chosen about start, goal and obstacles,
-            and where there is no path in that, one as wide as the fence.
         names: the obstacles' names, for the reason.
 
     Raises:
@@ -94,8 +88,8 @@ def find_detour(
         return Detour(None, reason)
     if free_segments_from(space, begin, end[None])[0]:
         return Detour(np.array([begin, end]))
-    boxes = [search_region(space, begin, end, settings) if region is None else _box(region, space)]
-    if region is None and area is not None:
+    boxes = [search_region(space, begin, end, settings)]
+    if area is not None:
         whole = whole_region(space, begin, end, settings)
         boxes += [whole] if not np.array_equal(whole, boxes[0]) else []
     spacing, fine = settings.spacing, settings.fine_spacing
@@ -164,15 +158,6 @@ def whole_region(space: FreeSpace, start: Array, goal: Array, settings: DetourSe
     if space.area is not None:
         settings = replace(settings, region_max=math.inf)
     return search_region(space, start, goal, settings)
-
-
-def _box(region: tuple[ArrayLike, ArrayLike], space: FreeSpace) -> Box:
-    corners = np.array([point(corner, "corner of the region") for corner in region])
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    low[2], high[2] = max(low[2], -space.highest), min(high[2], -space.lowest)
-    if np.any(high < low):
-        raise TrajectoryError("the region has no volume between the lowest and the highest altitude")
-    return low, high
 
 
 class _Grid:

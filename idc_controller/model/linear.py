@@ -62,12 +62,9 @@ class LinearModel:
 
     def _discretised(self, interval_us: int) -> tuple[Array, Array, Array]:
         """``A_k, B_k, B_dk`` for inputs held over ``interval_us`` microseconds (whole, so that they are kept)."""
-        n, m = self.B.shape
-        size = n + m + self.B_d.shape[1]
-        block = np.zeros((size, size))
-        block[:n, :n], block[:n, n : n + m], block[:n, n + m :] = self.A, self.B, self.B_d
-        step = expm(block * (interval_us * 1e-6))
-        return step[:n, :n].copy(), step[:n, n : n + m].copy(), step[:n, n + m :].copy()
+        A_k, driven = discretised(self.A, np.hstack([self.B, self.B_d]), interval_us * 1e-6)
+        m = self.layout.inputs
+        return A_k, driven[:, :m].copy(), driven[:, m:].copy()
 
     @cached_property
     def uav_position_rows(self) -> Array:
@@ -78,6 +75,15 @@ class LinearModel:
     def uav_velocity_rows(self) -> Array:
         """``C`` with UAV velocities = C x, (3N, n)."""
         return _kinematic_rows(self.parameters, self.layout, self.layout.v_0, self.layout.omega, self.layout.s_dot)
+
+
+def discretised(A: Array, B: Array, duration: float) -> tuple[Array, Array]:
+    """Return ``A`` (n, n) and ``B`` (n, m) for inputs that are held over a ``duration`` (s), exactly."""
+    n, m = B.shape
+    block = np.zeros((n + m, n + m))
+    block[:n, :n], block[:n, n:] = A, B
+    step = expm(block * duration)
+    return step[:n, :n].copy(), step[:n, n:].copy()
 
 
 def _kinematic_rows(

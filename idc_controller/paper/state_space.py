@@ -16,7 +16,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import expm
 
 from idc_controller.arrays import Array
 from idc_controller.model.linear import LinearModel
@@ -169,15 +168,6 @@ def embedding(parameters: SystemParameters) -> Array:
         for name in ("Theta", "omega"):
             T[full.of_uavs(name)[i], small.of_uavs(name)[i]] = 1.0
     return T
-
-
-def discretised(A: Array, B: Array, period: float) -> tuple[Array, Array]:
-    """A and B of eq:disSys for inputs held over ``period`` (s), exactly."""
-    n, m = B.shape
-    block = np.zeros((n + m, n + m))
-    block[:n, :n], block[:n, n:] = A * period, B * period
-    step = expm(block)
-    return step[:n, :n], step[:n, n:]
 
 
 def uncontrollable_modes(A: Array, B: Array, tolerance: float = 1e-6) -> list[complex]:

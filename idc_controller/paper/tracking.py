@@ -16,7 +16,8 @@ from scipy.linalg import solve_discrete_are
 from idc_controller.arrays import Array
 from idc_controller.control.prediction import CondensedPrediction
 from idc_controller.errors import SolverError
-from idc_controller.paper.state_space import Layout, discretised, minimal
+from idc_controller.model.linear import discretised
+from idc_controller.paper.state_space import Layout, minimal
 from idc_controller.parameters import SystemParameters
 from idc_controller.qp.parametric import ParametricQp
 

@@ -10,37 +10,6 @@ from idc_controller.compiled import kernel
 
 
 @kernel(
-    "float64[:, :, ::1](float64[:, ::1], float64[:, :, ::1], float64[:, ::1], float64[::1], float64, float64[:, ::1])"
-)
-def hull_points(
-    corners: Array, rims: Array, hover_offsets: Array, lengths: Array, g: float, acceleration: Array
-) -> Array:
-    """Return what :meth:`~idc_controller.geometry.formation.Formation.hull_points` does (K, C + N R, 3) (m).
-
-    Args:
-        corners: of the payload about its centre (C, 3) (m).
-        rims: points on the rims of the discs about their centres (N, R, 3) (m).
-        hover_offsets: UAVs from the payload's centre in hover (N, 3) (m).
-        lengths: of the links (N,) (m).
-        g: gravity (m/s2).
-        acceleration: of the payload (K, 3).
-    """
-    number, rim = rims.shape[0], rims.shape[1]
-    points = np.empty((len(acceleration), len(corners) + number * rim, 3))
-    for k in range(len(acceleration)):
-        points[k, : len(corners)] = corners
-        for i in range(number):
-            lever = lengths[i] / max(g - acceleration[k, 2], 0.2 * g)
-            for axis in range(3):
-                offset = hover_offsets[i, axis]
-                if axis < 2:
-                    offset += lever * acceleration[k, axis]
-                for r in range(rim):
-                    points[k, len(corners) + i * rim + r, axis] = offset + rims[i, r, axis]
-    return points
-
-
-@kernel(
     "Tuple((int64[::1], float64[:, ::1], float64[:, :, ::1], float64[:, :, ::1]))"
     "(float64[:, :, ::1], float64[:, ::1], float64[:, :, ::1], float64[:, ::1], float64[::1], boolean[::1], float64)"
 )

@@ -14,7 +14,7 @@ from idc_controller.geometry.formation import Formation
 from idc_controller.geometry.gjk_kernels import measure_distances
 from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.shape import Shape
-from idc_controller.safety.planner_kernels import hull_points, within_reach
+from idc_controller.safety.planner_kernels import within_reach
 
 _IDENTITY = coal.Transform3s.Identity()
 _BROAD = 0.5
@@ -88,10 +88,7 @@ def separations(
     """The obstacles nearer than ``within`` (m) to a hull at ``position`` (K + 1, 3) under ``acceleration``."""
     if not obstacles.count:
         return []
-    points = hull_points(
-        formation.corners, formation.rims, formation.hover_offsets, formation.lengths, formation.g,
-        np.ascontiguousarray(acceleration),
-    )  # fmt: skip
+    points = formation.hull_points(acceleration)
     # Most obstacles are far at all stages: bounds of hull and obstacles show it.
     indices, far, offsets, normals = within_reach(
         points, np.ascontiguousarray(position), obstacles.centres, obstacles.growth, obstacles.reach,

@@ -3,11 +3,8 @@
 import numpy as np
 
 from idc_controller.arrays import Array, Indices
-from idc_controller.compiled import inlined, kernel
+from idc_controller.compiled import MATRIX, VECTOR, inlined, kernel
 from idc_controller.model.drag import SMOOTHING
-
-_VECTOR, _MATRIX = (f"Array(float64, {axes}, 'C', readonly=True)" for axes in (1, 2))
-"""Types of arrays of parameters, which are read only."""
 
 
 @inlined
@@ -216,9 +213,9 @@ def _states(
 @kernel(
     "Tuple((float64[:, ::1], float64[:, ::1], float64[:, :, ::1], float64[:, :, ::1], float64[:, ::1], "
     "float64[:, :, ::1], float64[:, ::1], float64[:, :, ::1]))"
-    f"(float64[:, :, ::1], int64[:, ::1], float64, float64, {_VECTOR}, float64[:, ::1], "
-    f"boolean, {_VECTOR}, {_VECTOR}, float64, float64, "
-    f"float64, {_MATRIX}, {_VECTOR}, {_VECTOR}, float64, float64, float64)"
+    f"(float64[:, :, ::1], int64[:, ::1], float64, float64, {VECTOR}, float64[:, ::1], "
+    f"boolean, {VECTOR}, {VECTOR}, float64, float64, "
+    f"float64, {MATRIX}, {VECTOR}, {VECTOR}, float64, float64, float64)"
 )
 def flat_map(
     derivatives: Array,
@@ -258,20 +255,6 @@ def flat_map(
         derivatives, mass, force, uav_force, has_air, wind, payload_drag, uav_drag, drag_limit, g, p, l, m
     )
     x, u = _states(derivatives, links, thrust, index, h, kp, kd, T_m)
-    K, N = len(index), len(m)
-    at, directions, at_tension = np.empty((5, K, 3)), np.empty((3, K, 3)), np.empty((K, N))
-    at_thrust, at_payload, at_uavs = np.empty((K, N, 3)), np.empty((K, 3)), np.empty((K, N, 3))
-    for k in range(K):
-        j = index[k, 2]
-        for c in range(3):
-            for order in range(5):
-                at[order, k, c] = derivatives[order, j, c]
-            for order in range(3):
-                directions[order, k, c] = links[order, j, c]
-            at_payload[k, c] = on_payload[j, c]
-            for i in range(N):
-                at_thrust[k, i, c] = thrust[j, i, c]
-                at_uavs[k, i, c] = uav_force[i, c] + on_uav[j, c]
-        for i in range(N):
-            at_tension[k, i] = tension[j, i]
-    return x, u, at, directions, at_tension, at_thrust, at_payload, at_uavs
+    at = index[:, 2].copy()
+    on_uavs = uav_force + on_uav[at].reshape(-1, 1, 3)
+    return x, u, derivatives[:, at], links[:, at], tension[at], thrust[at], on_payload[at], on_uavs

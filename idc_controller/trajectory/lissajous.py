@@ -179,6 +179,6 @@ def _holds_limits(curve: LissajousCurve, limits: Limits, phase: PPoly, times: Ar
 
 def _holds_limits_at(curve: LissajousCurve, limits: Limits, phase: PPoly, times: Array) -> bool:
     phases = np.array([phase(times, order) for order in range(5)])
-    norms = np.linalg.norm(curve.by_time(phases), axis=2).max(axis=1)
+    norms = np.linalg.norm(curve.at(phases)[1:], axis=2).max(axis=1)
     # Never backwards; samples may miss a peak by a little.
     return bool(phases[1].min() >= -1e-9 and np.all(norms <= limits.as_array()[:4] * (1.0 - 1e-3)))

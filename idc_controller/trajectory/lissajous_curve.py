@@ -8,6 +8,7 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
 from idc_controller.trajectory.settings import Limits
+from idc_controller.trajectory.trajectory_kernels import figure_eight
 
 
 @dataclass(frozen=True)
@@ -38,33 +39,19 @@ class LissajousCurve:
         """Return the amplitudes, the centre and down (5,) (m)."""
         return np.array([*self.amplitude, *self.centre, self.down])
 
-    def by_phase(self, phase: Array, order: int) -> list[Array]:
-        """The curve and its derivatives by phase (rad) up to ``order``, each (K, 3), m / rad^d."""
-        result = []
-        for d in range(order + 1):
-            x = self.amplitude[0] * np.sin(phase + d * np.pi / 2.0)
-            y = -self.amplitude[1] * 2.0**d * np.sin(2.0 * phase + d * np.pi / 2.0)
-            result.append(np.column_stack([x, y, np.zeros_like(x)]))
-        result[0] += [*self.centre, self.down]
-        return result
+    def at(self, phases: Array) -> Array:
+        """Return position to the derivative of ``order`` by time (order + 1, K, 3), NED, SI.
 
-    def by_time(self, phases: Array) -> Array:
-        """Return velocity to snap (4, K, 3) by the chain rule; ``phases``: phase and derivatives by time (5, K)."""
-        _, r_1, r_2, r_3, r_4 = self.by_phase(phases[0], 4)
-        s_1, s_2, s_3, s_4 = phases[1:, :, None]
-        curved = r_2 * (3.0 * s_2**2 + 4.0 * s_1 * s_3)
-        return np.array([
-            r_1 * s_1,
-            r_2 * s_1**2 + r_1 * s_2,
-            r_3 * s_1**3 + 3.0 * r_2 * s_1 * s_2 + r_1 * s_3,
-            r_4 * s_1**4 + 6.0 * r_3 * s_1**2 * s_2 + curved + r_1 * s_4,
-        ])  # fmt: skip
+        ``phases``: the phase and its derivatives by time (order + 1, K) (rad / s^d), order 4 at most.
+        """
+        return figure_eight(self.as_array(), phases)
 
 
 def largest_derivatives(curve: LissajousCurve, rate: float) -> Array:
     """Largest norms (4,) of speed to snap at the full rate."""
-    r = np.array(curve.by_phase(np.linspace(0.0, 2.0 * np.pi, 721), 4)[1:])
-    return np.asarray(np.linalg.norm(r, axis=2).max(axis=1) * rate ** np.arange(1, 5))
+    phases = np.zeros((5, 721))
+    phases[0], phases[1] = np.linspace(0.0, 2.0 * np.pi, 721), rate
+    return np.asarray(np.linalg.norm(curve.at(phases)[1:], axis=2).max(axis=1))
 
 
 def check_full_rate(curve: LissajousCurve, rate: float, limits: Limits) -> None:

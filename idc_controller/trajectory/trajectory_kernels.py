@@ -98,8 +98,8 @@ def _phase(coefficients: Array, knots: Array, times: Array, order: int) -> Array
     return result
 
 
-@inlined
-def _figure_eight(curve: Array, phases: Array) -> Array:
+@kernel("float64[:, :, ::1](float64[::1], float64[:, ::1])")
+def figure_eight(curve: Array, phases: Array) -> Array:
     """Return position and derivatives by time (order + 1, K, 3) on the figure eight, by the chain rule (Faa di Bruno).
 
     Args:
@@ -141,12 +141,12 @@ def figure_eight_at(curve: Array, coefficients: Array, knots: Array, times: Arra
     """Return position and derivatives (order + 1, K, 3) on the figure eight at ``times`` (K,) (s).
 
     Args:
-        curve: see ``_figure_eight``.
+        curve: see :func:`figure_eight`.
         coefficients, knots: of the phase, which rests before and after; see ``_phase``.
         times: (K,) (s).
         order: highest derivative.
     """
-    return _figure_eight(curve, _phase(coefficients, knots, times, order))
+    return figure_eight(curve, _phase(coefficients, knots, times, order))
 
 
 @inlined

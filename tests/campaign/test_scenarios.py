@@ -26,9 +26,10 @@ from gcs.mission.read import read_mission
 from gcs.planning.schedule import Schedule, arrival
 from gcs.record.run_folder import open_run_folder
 from gcs.record.tables import truth_columns
+from idc_controller.geometry.bounding_cylinder import BoundingCylinder
+from idc_controller.geometry.free_space import first_conflict
 from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.sphere import Sphere
-from idc_controller.guidance.detour import BoundingCylinder, first_conflict
 
 pytestmark = pytest.mark.slow
 

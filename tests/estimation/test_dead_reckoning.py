@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from quaternions import quaternion_product
 
 from idc_controller.estimation.health.dead_reckoning import DeadReckoning
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position, SampleStack, SensorGroup
 from idc_controller.estimation.settings import DeadReckoningSettings
-from idc_controller.rotations import quaternion_from_euler, quaternion_product
+from idc_controller.rotations import quaternion_from_euler
 
 VEHICLES = 4
 SEEDS = [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in (1, 2))]

@@ -5,7 +5,7 @@ import pytest
 
 from idc_controller.estimation.health.chi_squared import lower_quantile
 from idc_controller.estimation.health.innovation_monitor import Finding, InnovationMonitor
-from idc_controller.estimation.health.innovation_monitor_kernels import exceeded, normalised_square, running_means
+from idc_controller.estimation.health.innovation_monitor_kernels import exceeded, running_means
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from idc_controller.estimation.settings import InnovationMonitorSettings
 
@@ -149,12 +149,3 @@ def test_compiled_limits_equal_those_of_whole_arrays():
         np.testing.assert_array_equal(biased, (sums > mean_limits).any(axis=1))
         np.testing.assert_array_equal(noisy, (square > square_limits).any(axis=1))
         assert found == bool(biased.any() or noisy.any()) == (factor == 1.0)
-
-
-def test_normalised_square_equals_that_of_a_linear_solver():
-    rng = np.random.default_rng(9)
-    for _ in range(20):
-        root, vector = rng.normal(size=(3, 3)), rng.normal(size=3)
-        covariance = root @ root.T + 0.1 * np.eye(3)
-        assert normalised_square(vector, covariance) == pytest.approx(vector @ np.linalg.solve(covariance, vector))
-    assert np.isnan(normalised_square(vector, -np.eye(3)))

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from estimator_scene import LAYOUT, MODEL, REFERENCE
 from paper_system import system
+from quaternions import quaternion_product
 
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.measurement_model import MeasurementModel
@@ -11,7 +12,7 @@ from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measuremen
 from idc_controller.estimation.settings import MeasurementModelSettings
 from idc_controller.estimation.vehicle_kernels import vehicle_states
 from idc_controller.model.linear import StateLayout
-from idc_controller.rotations import quaternion_from_euler, quaternion_product, rotation_from_quaternion
+from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 from idc_controller.rotations_float import attitude_of_direction
 
 pytestmark = pytest.mark.numerics

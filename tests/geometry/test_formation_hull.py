@@ -72,7 +72,8 @@ def test_uav_offsets_agree_with_flatness(n):
     derivatives[2] = a
     q = flat_forces(parameters, derivatives, Load(parameters.m_0, np.zeros(3))).q
     exact = parameters.p - parameters.l[:, None] * q[:, None]
-    computed = formation.uav_offsets(a)
+    rims = formation.hull_points(a)[:, len(formation.corners) :].reshape(len(a), n, -1, 3)
+    computed = (rims - formation.rims)[:, :, 0]
     tilt = np.hypot(a[:, 0], a[:, 1]) / (parameters.g - a[:, 2])
     error = np.abs(computed - exact)
     l = parameters.l.max()
@@ -109,9 +110,9 @@ def test_discs_and_payload_supports_bound_the_exact_hull(n):
     normals = rng.normal(size=(len(a), 3))
     normals[::2, 2] = 0.0
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    lever = formation.levers(a)[:, 0]
+    lever = formation.lengths[0] / (formation.g - a[:, 2])
     computed = np.maximum(
-        formation.payload.support(normals),
+        (normals @ formation.payload.vertices.T).max(axis=1),
         disc_support(formation, normals, a) + lever * np.sum(normals[:, :2] * a[:, :2], axis=1),
     )
     true = np.einsum("kpi,ki->kp", exact, normals).max(axis=1)

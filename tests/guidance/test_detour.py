@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from idc_controller.errors import TrajectoryError
+from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.box import Wall
+from idc_controller.geometry.free_space import FreeSpace, first_conflict
 from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
-from idc_controller.guidance.detour import BoundingCylinder, FreeSpace, find_detour, first_conflict
+from idc_controller.guidance.detour import find_detour
 from idc_controller.guidance.settings import DetourSettings
 from idc_controller.guidance.straighten import straightened
 
@@ -109,12 +111,12 @@ def test_gap_missed_by_coarse_grid_is_found():
     """0.34 m wider than it must be, in a wall across the whole region of the search."""
     half = 1.1 + MARGIN + 0.17
     walls = [wall(10.0, 0.75 - half - 10.0, 0.3, 20.0), wall(10.0, 0.75 + half + 10.0, 0.3, 20.0)]
-    region = (-10.0, -6.5, -12.0), (30.0, 6.5, -0.5)
-    detour = detour_of(walls, region=region)
+    settings = DetourSettings(region_max=13.0)
+    detour = detour_of(walls, settings=settings)
     assert detour.waypoints is not None
     assert np.interp(10.0, detour.waypoints[:, 0], detour.waypoints[:, 1]) == pytest.approx(0.75, abs=0.17)
     narrow = [wall(10.0, 0.75 - 1.59 - 10.0, 0.3, 20.0), wall(10.0, 0.75 + 1.59 + 10.0, 0.3, 20.0)]
-    assert "too narrow" in detour_of(narrow, region=region).reason
+    assert "too narrow" in detour_of(narrow, settings=settings).reason
 
 
 def test_goal_in_closed_box_is_unreachable():
@@ -321,7 +323,6 @@ def test_search_refuses_invalid_arguments():
         lambda: detour_of([], highest=0.2),
         lambda: detour_of([], goal=(0.0, math.nan, 0.0)),
         lambda: detour_of([sphere(1.0, math.inf, 0.0)]),
-        lambda: detour_of([pole(10.0, 0.0)], region=((0.0, 0.0, -99.0), (9.0, 9.0, -98.0))),
     ):
         with pytest.raises(TrajectoryError):
             wrong()

@@ -6,13 +6,13 @@ from nonlinear_motion import hover_inputs, hover_state, uav_positions
 from paper_system import system
 from test_nonlinear_model import make_parameters, newton_euler, random_state
 
+from idc_controller.model.linear import discretised
 from idc_controller.model.nonlinear import Inputs, accelerations, matrix_P, thrust_forces, vector_Q
 from idc_controller.paper import printed_equations as printed
 from idc_controller.paper.plant import Plant, PlantState
 from idc_controller.paper.state_space import (
     Layout,
     derivative,
-    discretised,
     embedding,
     hover,
     linearised,

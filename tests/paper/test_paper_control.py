@@ -195,7 +195,7 @@ def test_hull_does_not_translate_with_the_payload():
     times = np.linspace(0.0, 4 * np.pi, 400)
     h = 1e-3
     a = (printed_reference(times + h) - 2 * printed_reference(times) + printed_reference(times - h)) / h**2
-    shift = np.linalg.norm(formation.uav_offsets(a) - formation.uav_offsets(np.zeros((1, 3))), axis=-1)
+    shift = np.linalg.norm(formation.hull_points(a)[:, -1] - formation.hull_points(np.zeros((1, 3)))[:, -1], axis=-1)
     assert shift.max() > 0.9
 
 

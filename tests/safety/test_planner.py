@@ -110,7 +110,7 @@ def test_barrier_limits_how_fast_an_obstacle_is_approached(rates):
     plan, near, about = solved(planner, np.zeros((5, 3)), mission, [obstacle])
     assert plan.slack < 1e-6
     position = mission[0] + plan.deviation[:, 0]
-    n, lever = near[0].normals, planner.formation.levers(about)[:, 0]
+    n, lever = near[0].normals, planner.formation.lengths[0] / (planner.formation.g - about[:, 2])
     change = plan.deviation[:, 2] + mission[2] - about
     barrier_values = planner.barrier.values(near[:1], position, about)[0]
     barrier_values[1] -= lever * np.sum(n[:, :2] * change[:, :2], axis=1)

@@ -4,10 +4,10 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from quaternions import quaternion_product
 
 from idc_controller.model.nonlinear import Inputs, SystemState, accelerations
 from idc_controller.parameters import SystemParameters
-from idc_controller.rotations import quaternion_product
 
 Array = NDArray[np.float64]
 

@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pybullet
 from paper_system import system
+from quaternions import quaternion_product
 
 from gcs.config.tables import WorldConfig
 from idc_controller.model.nonlinear import accelerations
-from idc_controller.rotations import quaternion_product, rotation_from_quaternion
+from idc_controller.rotations import rotation_from_quaternion
 from idc_controller.rotations_float import into_body
 from vehicle_sim.world.contact_detection import ContactDetector
 from vehicle_sim.world.world_state import flipped, quaternion_to_engine

@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from flying import AIRFRAME, measured
+from quaternions import quaternion_product
 from scipy.interpolate import BPoly
 
 from gcs.config.vehicle_settings import LandDetectorSettings
-from idc_controller.rotations import quaternion_from_euler, quaternion_product
+from idc_controller.rotations import quaternion_from_euler
 from idc_controller.rotations_float import attitude_of_force
 from idc_controller.trajectory.settings import BrakingSettings
 from vehicle_sim.autopilot.hold_control import HoldPlan

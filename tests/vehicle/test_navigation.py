@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 from flying import AIRFRAME
+from quaternions import quaternion_product
 
 from gcs.config.vehicle_settings import LandDetectorSettings, NavigationSettings
-from idc_controller.rotations import quaternion_product
 from vehicle_sim.autopilot.navigation import Navigation
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.world.sensors import Measurement

@@ -19,11 +19,13 @@ from gcs.mission.motion import AnyMotion, LinearMotion
 from gcs.mission.route import Route
 from gcs.mission.toml_mission import route_through
 from gcs.planning.schedule import Schedule
+from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.box import Wall
+from idc_controller.geometry.free_space import FreeSpace
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.shape import Shape
 from idc_controller.geometry.sphere import Sphere
-from idc_controller.guidance.detour import BoundingCylinder, FreeSpace, find_detour
+from idc_controller.guidance.detour import find_detour
 
 Array = NDArray[np.float64]
 Random = np.random.Generator

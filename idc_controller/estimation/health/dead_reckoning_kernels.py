@@ -3,10 +3,8 @@
 import numpy as np
 
 from idc_controller.arrays import Array, Indices, Mask
-from idc_controller.compiled import inlined, kernel
+from idc_controller.compiled import VECTOR, inlined, kernel
 
-_VECTOR = "Array(float64, 1, 'C', readonly=True)"
-"""Type of arrays that are only read."""
 _MEDIAN_EFFICIENCY = 1.2533  # standard deviation of a median of n, times sqrt(n), over that of one sample
 _FROM_STEPS = 1.4826 / 2.0**0.5  # standard deviation of a sample over the median step from one to the next
 
@@ -36,7 +34,7 @@ def _turn(attitude: Array, duration: float, rates: Array) -> None:
     attitude /= np.sqrt((attitude * attitude).sum())
 
 
-@kernel(f"void(float64[:, ::1], float64[::1], float64[::1], float64, {_VECTOR}, float64[::1])")
+@kernel(f"void(float64[:, ::1], float64[::1], float64[::1], float64, {VECTOR}, float64[::1])")
 def integrate(motions: Array, motion: Array, integral: Array, duration: float, pose: Array, difference: Array) -> None:
     """Integrate the median motion, and take the difference of a pose and the integral.
 
@@ -96,7 +94,7 @@ def drift_ratio(window: Array, n: int, error: float, sigmas: float) -> float:
 
 
 @kernel(
-    f"Tuple((int64, int64))({_VECTOR}, int64[::1], boolean[::1], {_VECTOR}, int64, float64, float64, int64, "
+    f"Tuple((int64, int64))({VECTOR}, int64[::1], boolean[::1], {VECTOR}, int64, float64, float64, int64, "
     "float64, float64, float64, float64[:, :, ::1], float64[:, ::1], float64[:, ::1], float64[:, :, ::1], "
     "int64[:, ::1], float64[::1])"
 )

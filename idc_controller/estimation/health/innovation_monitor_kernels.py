@@ -74,22 +74,3 @@ def exceeded(mean: Array, square: Array, mean_limits: Array, square_limits: Arra
             noisy[at] |= square[at, part] > square_limits[at, part]
         found = found or biased[at] or noisy[at]
     return found, biased, noisy
-
-
-@kernel("float64(float64[:], float64[:, :])")
-def normalised_square(vector: Array, covariance: Array) -> float:
-    """Return v' P^-1 v of a ``vector`` (3,) and its ``covariance`` (3, 3), by Cholesky; nan if that is not definite."""
-    factor, total = np.zeros((3, 3)), 0.0
-    scaled = np.empty(3)
-    for i in range(3):
-        for j in range(i + 1):
-            value = covariance[i, j]
-            for k in range(j):
-                value -= factor[i, k] * factor[j, k]
-            factor[i, j] = np.sqrt(value) if i == j else value / factor[j, j]
-        value = vector[i]
-        for k in range(i):
-            value -= factor[i, k] * scaled[k]
-        scaled[i] = value / factor[i, i]
-        total += scaled[i] * scaled[i]
-    return total
