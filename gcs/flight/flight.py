@@ -24,7 +24,7 @@ from idc_controller.arrays import Array
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.estimation.measurements import Measurement
 from idc_controller.perception.obstacle_map import ObstacleMap
-from idc_controller.trajectory.reference import Reference
+from idc_controller.trajectory.flatness import Reference
 from idc_controller.trajectory.trajectory import RestTrajectory, Trajectory
 
 

@@ -25,8 +25,7 @@ from idc_controller.estimation.settings import MeasurementModelSettings
 from idc_controller.guidance.progress import Guidance
 from idc_controller.model.linear import LinearModel
 from idc_controller.safety.filter_protocol import SafetyFilter
-from idc_controller.trajectory.flatness import Load, PayloadTrajectory
-from idc_controller.trajectory.reference import Reference
+from idc_controller.trajectory.flatness import Load, PayloadTrajectory, Reference
 from idc_controller.trajectory.trajectory import Trajectory
 
 BEFORE = 1.0

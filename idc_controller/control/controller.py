@@ -27,8 +27,7 @@ from idc_controller.guidance.sight import SightLimit
 from idc_controller.model.linear import LinearModel
 from idc_controller.parameters import SystemParameters
 from idc_controller.safety.filter_protocol import SafetyFilter, SafetyReport
-from idc_controller.trajectory.flatness import FlatReference, PayloadTrajectory
-from idc_controller.trajectory.reference import Reference
+from idc_controller.trajectory.flatness import FlatReference, PayloadTrajectory, Reference
 from idc_controller.trajectory.trajectory import Trajectory
 
 

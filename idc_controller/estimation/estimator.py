@@ -30,7 +30,7 @@ from idc_controller.estimation.setpoint_history import Confirmation, SetpointHis
 from idc_controller.estimation.settings import EstimatorSettings
 from idc_controller.model.linear import LinearModel
 from idc_controller.rotations import quaternion_from_euler
-from idc_controller.trajectory.reference import Reference
+from idc_controller.trajectory.flatness import Reference
 
 _POSES, _MOTIONS = (True, False), (False, True)
 

@@ -11,7 +11,7 @@ from idc_controller.estimation.kalman_filter import Innovation, StructuredKalman
 from idc_controller.estimation.process_model import ProcessModel
 from idc_controller.estimation.propagation_kernels import about_reference, are_finite, defect, propagated_variances
 from idc_controller.estimation.setpoint_history import SetpointHistory
-from idc_controller.trajectory.reference import Reference
+from idc_controller.trajectory.flatness import Reference
 
 _NONE = np.zeros(0)
 _SAME = 1e-6

@@ -20,18 +20,6 @@ def _measured_less_reference(
 
     A position has 6 rows, an attitude of the payload 6 (Euler angles and body rates), one of a UAV 4: of that only the
     direction of the thrust moves anything, n = -R e3, n' = -R (omega x e3).
-
-    Args:
-        values: poses (quaternion or position) and motions, one measurement after the other, NED, SI.
-        sources: UAV (K,), or negative for the payload.
-        is_position: whether each is a position; else it is an attitude (K,).
-        m: number of rows.
-        reference: states of the reference in the linear model's coordinates (T, 12 + 11 N).
-        payload: derivatives of the payload's position (5, T, 3).
-        q, q_dot: direction of the links and its derivative (3,), at time ``k``.
-        k: index of the time in the reference.
-        p: attachment points (N, 3) (m).
-        l: lengths of the links (N,) (m).
     """
     N = len(l)
     result = np.empty(m)
@@ -113,8 +101,14 @@ def innovations(
     A change of the lateral part of a tilted link changes its height too.
 
     Args:
-        values, sources, is_position, reference, payload, k, p, l: see :func:`_measured_less_reference`.
+        values: poses (quaternion or position) and motions, one measurement after the other, NED, SI.
+        sources: UAV (K,), or negative for the payload.
+        is_position: whether each is a position; else it is an attitude (K,).
+        reference: states of the reference in the linear model's coordinates (T, 12 + 11 N).
+        payload: derivatives of the payload's position (5, T, 3).
         q, q_dot: direction of the links and its derivative (T, 3).
+        k: index of the time in the reference.
+        p, l: attachment points (N, 3) and lengths (N,) of the links (m).
         columns, coefficients: with links upright (m, W); the last two of the heights' rows are those of the link.
         uavs: UAVs whose position is observed (P,).
         heights: rows of their heights (P,); those of the vertical velocities are three below.

@@ -48,16 +48,10 @@ def _is_passed(
     voxels: Voxels, element: Array, origin: Array, way: Array, length: float, range_variance: float, sigmas: Array,
     sigmas_beyond: float, incidence: float, normal: Array,
 ) -> int:  # fmt: skip
-    """Return whether a ray goes through the place of an element's points and ends beyond.
+    """Return 1 for a ray that goes through the place of an element's points and ends beyond, else 0.
 
-    1: it does; -1: it does, along their surface, but as the rays went that hit it; 0: neither.
-
-    Args:
-        way: unit vector along the ray (3,); ``length``: to its end (m).
-        range_variance: of the end along the ray (m2).
-        sigmas_beyond: standard deviations by which the end must lie beyond the points.
-        incidence: least cosine between ray and normal of the surface about the points.
-        normal: (3,), to be written to.
+    -1: along their surface, but as the rays went that hit it. ``way`` (3,) and ``length`` of the ray; ``normal`` (3,)
+    is written to.
     """
     along, square = 0.0, 0.0
     for i in range(3):

@@ -227,14 +227,7 @@ class ObstacleMap:
     def _associate(
         self, placed: list[Cluster], offsets: dict[int, Array], usable: list[PlacedScan], candidates: set[int]
     ) -> None:
-        """Update tracks by the clusters of a frame.
-
-        Args:
-            placed: where the vehicles' poses place them.
-            offsets: of what vehicles detect from the map.
-            usable: scans by which tracks are updated, without their offset.
-            candidates: numbers of the clusters that may begin a track.
-        """
+        """Update tracks by the clusters of a frame, ``placed`` by the vehicles' poses, and its ``usable`` scans."""
         uavs = {scan.uav for scan in usable}
         time = max(cluster.scan.time for cluster in placed)
         clusters = [c.shifted(-offsets[c.uav]) if c.uav in offsets else c for c in placed]

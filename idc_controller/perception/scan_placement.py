@@ -228,10 +228,7 @@ class ScanPlacement:
         pose: tuple[Array, Array],
         sigmas: tuple[float, float],
     ) -> PlacedScan:
-        """Return the scan with what was ``measured``, ``sigmas`` of the pose (m, rad).
-
-        That is its returns (n, 3) and the directions of its rays (m, 3), in the body frame.
-        """
+        """Return the scan by its returns (n, 3) and rays (m, 3) in the body frame, and ``sigmas`` of the pose."""
         points, directions = measured
         along, (anywhere, turning) = self._sensors.range_noise, sigmas
         place, rotation = np.ascontiguousarray(pose[0]), np.ascontiguousarray(rotation_from_quaternion(pose[1]))

@@ -37,7 +37,7 @@ from idc_controller.perception.voxel_kernels import (
     SURFACE,
     USED,
 )
-from idc_controller.perception.voxel_store import VoxelStore
+from idc_controller.perception.voxel_store import no_voxels, reserved
 
 _ALL = np.empty(0, dtype=np.int64)
 
@@ -58,7 +58,7 @@ class StandingMap:
 
     def __init__(self, settings: StandingMapSettings = StandingMapSettings()) -> None:
         self.settings = s = settings
-        self._store = VoxelStore(s.voxel)
+        self._voxels = no_voxels()
         scans = np.arange(1.0, s.memory + 1.0)
         # All of so many scans report a surface short of where it is with the stated probability. Inwards, not more than
         # one: not all points need lie on one surface.
@@ -70,26 +70,26 @@ class StandingMap:
 
     def add(self, scan: PlacedScan, moving: Mask | None = None) -> None:
         """Add one scan; ``moving``: returns (n,) of what is known to move, which leave no points."""
-        s, v = self.settings, self._store
+        s = self.settings
         origin, returns = np.ascontiguousarray(scan.origin), np.ascontiguousarray(scan.returns)
-        free = followed_rays(v.arrays, origin, np.ascontiguousarray(scan.free_rays), self._scan, s.exploring_stride)
+        free = followed_rays(self._voxels, origin, np.ascontiguousarray(scan.free_rays), self._scan, s.exploring_stride)
         taken = np.ones(len(returns), dtype=bool) if moving is None else ~moving
         self._scan += 1
-        v.reserve(origin, returns, free)
+        self._voxels = reserved(self._voxels, s.voxel, origin, returns, free)
         sigmas, number = _sigmas(scan), float(self._scan)
         add_returns(
-            v.arrays, origin, returns, taken, sigmas, scan.time, number, s.voxel, s.free_passes, s.settling_time,
+            self._voxels, origin, returns, taken, sigmas, scan.time, number, s.voxel, s.free_passes, s.settling_time,
             s.tolerance, s.memory, self._chi_squared,
         )  # fmt: skip
         carve(
-            v.arrays, origin, returns, free, sigmas, number, s.voxel, s.free_passes, s.sigmas_beyond,
+            self._voxels, origin, returns, free, sigmas, number, s.voxel, s.free_passes, s.sigmas_beyond,
             s.incidence_min, self._prior, self._evidence, s.memory,
         )  # fmt: skip
 
     def normals(self, points: Array) -> Array:
         """Return the unit normals of what stands at ``points`` (n, 3) -> (n, 3); zero where they are not known."""
         points = np.ascontiguousarray(points, dtype=float).reshape(-1, 3)
-        return queries.normals_at(self._store.arrays, points, self.settings.voxel)
+        return queries.normals_at(self._voxels, points, self.settings.voxel)
 
     def release(self, bodies: Sequence[tuple[Shape, Array, float]], gap: float) -> None:
         """Remove the points within ``gap`` (m) of bodies that move, unless they have stood for longer than these.
@@ -97,15 +97,15 @@ class StandingMap:
         Each body is a shape, its centre (3,) (NED, m) and the time (s) since which it has been seen: what was hit more
         than the settling time before is not of it.
         """
-        arrays, indices = self._store.arrays, self._used()
+        voxels, indices = self._voxels, self._used()
         if not len(indices) or not bodies:
             return
-        means = arrays.elements[indices, MEAN : MEAN + 3]
+        means = voxels.elements[indices, MEAN : MEAN + 3]
         shapes, centres, first = zip(*bodies, strict=True)
         distance = Bodies(shapes).distance(means, np.array(centres))
         since = np.array(first) - self.settings.settling_time
-        is_its = (distance <= gap) & (arrays.elements[indices, BORN] >= since[:, None])
-        release(arrays, indices[is_its.any(axis=0)], self.settings.free_passes)
+        is_its = (distance <= gap) & (voxels.elements[indices, BORN] >= since[:, None])
+        release(voxels, indices[is_its.any(axis=0)], self.settings.free_passes)
 
     def unseen(self, path: Array, body: Array, most: int) -> tuple[Indices, Array]:
         """Return up to ``most`` cells on the way of a body along its ``path`` (P, 3) that were not seen free.
@@ -115,14 +115,14 @@ class StandingMap:
         """
         s, found = self.settings, np.empty((most, 4))
         count = unseen_cells(
-            self._store.arrays, np.ascontiguousarray(path), body, s.voxel, s.sight_width, s.sight_rays, found
+            self._voxels, np.ascontiguousarray(path), body, s.voxel, s.sight_width, s.sight_rays, found
         )
         return found[:count, 0].astype(np.int64), found[:count, 1:]
 
     def first_hidden(self, path: Array, sensors: Array, heights: Array) -> int:
         """See :func:`~idc_controller.perception.sight_kernels.first_hidden`."""
         path = np.ascontiguousarray(path)
-        return int(first_hidden(self._store.arrays, path, sensors, heights, self.settings.voxel))
+        return int(first_hidden(self._voxels, path, sensors, heights, self.settings.voxel))
 
     @property
     def is_empty(self) -> bool:
@@ -137,7 +137,7 @@ class StandingMap:
     def is_standing(self, points: Array, since: float = math.inf) -> Mask:
         """Return whether the voxels with ``points`` (n, 3) hold what stands, and was first hit before ``since`` (s)."""
         points = np.ascontiguousarray(points, dtype=float).reshape(-1, 3)
-        return queries.stands_at(self._store.arrays, points, self.settings.voxel, since)
+        return queries.stands_at(self._voxels, points, self.settings.voxel, since)
 
     def unexplained(self, scan: PlacedScan) -> Mask:
         """Return the returns (n,) of a scan, before it is added, that standing points and noise do not explain.
@@ -147,7 +147,7 @@ class StandingMap:
         """
         s, origin, returns = self.settings, np.ascontiguousarray(scan.origin), np.ascontiguousarray(scan.returns)
         return queries.unexplained_returns(
-            self._store.arrays, origin, returns, _sigmas(scan), s.voxel, s.free_passes, self._chi_squared
+            self._voxels, origin, returns, _sigmas(scan), s.voxel, s.free_passes, self._chi_squared
         )
 
     def take_changed_blocks(self) -> tuple[Indices, Indices, Mask]:
@@ -156,8 +156,8 @@ class StandingMap:
         Numbers (n,); first voxels of each (n, 3), which has ``EDGE`` along each edge; whether points came or went (n,),
         not only free voxels.
         """
-        count = int(self._store.arrays.counts[BLOCKS])
-        changes = self._store.arrays.blocks[:count, CHANGE]
+        count = int(self._voxels.counts[BLOCKS])
+        changes = self._voxels.blocks[:count, CHANGE]
         changed = np.flatnonzero(changes)
         surface = changes[changed] & SURFACE != 0
         changes[changed] = 0
@@ -165,17 +165,17 @@ class StandingMap:
 
     def elements_of(self, blocks: Indices) -> SurfaceElements:
         """Return the surface elements in some ``blocks`` (n,)."""
-        found = (self._store.arrays.links[blocks].ravel() >> 8).astype(np.int64) - 1
+        found = (self._voxels.links[blocks].ravel() >> 8).astype(np.int64) - 1
         return self.elements(found[found >= 0])
 
     def elements(self, indices: Indices) -> SurfaceElements:
         """Return the surface elements with these ``indices`` (n,)."""
-        means = self._store.arrays.elements[indices, MEAN : MEAN + 3]
+        means = self._voxels.elements[indices, MEAN : MEAN + 3]
         return SurfaceElements(indices, self.numbers(indices), means)
 
     def are_current(self, indices: Indices, numbers: Indices) -> Mask:
         """Return whether elements are still those with these serial ``numbers`` (n,)."""
-        return np.asarray(self._store.arrays.elements[indices, NUMBER] == numbers)
+        return np.asarray(self._voxels.elements[indices, NUMBER] == numbers)
 
     def gaps(self, box: Array, most: int, among: Indices = _ALL) -> Array:
         """Return the middles (n, 3) of up to ``most`` gaps in a box: seen free, with no point in the 27 voxels about.
@@ -183,11 +183,11 @@ class StandingMap:
         ``box`` (8,): see :mod:`idc_controller.perception.upright_box`; ``among``: blocks that are searched.
         """
         s = self.settings
-        return boxes.gaps_within(self._store.arrays, among, box, s.voxel, s.free_passes, most)
+        return boxes.gaps_within(self._voxels, among, box, s.voxel, s.free_passes, most)
 
     def cover(self, indices: Indices, bounds: Array) -> None:
         """Write the bounds of the true surface at elements ``indices`` (n,) into ``bounds`` (E, 6) (m)."""
-        boxes.cover_points(self._store.arrays, indices, self._sigmas, self.settings.tolerance, bounds)
+        boxes.cover_points(self._voxels, indices, self._sigmas, self.settings.tolerance, bounds)
 
     def nearest_owners(self, indices: Indices, owners: Indices) -> Indices:
         """Return for elements ``indices`` (n,) the owner of the nearest that has one within the bridged gap, or -1.
@@ -195,28 +195,28 @@ class StandingMap:
         ``owners``: owner and serial number of each element (E, 2); of another serial number: none.
         """
         reach = math.ceil(self.settings.bridged_gap / self.settings.voxel)
-        return queries.nearest_owners(self._store.arrays, indices, owners, reach)
+        return queries.nearest_owners(self._voxels, indices, owners, reach)
 
     def hits(self, indices: Indices) -> float:
         """Return the sum of the scans that hit elements ``indices`` (n,)."""
-        return float(self._store.arrays.elements[indices, HITS].sum())
+        return float(self._voxels.elements[indices, HITS].sum())
 
     def numbers(self, indices: Indices) -> Indices:
         """Return the serial numbers of elements ``indices`` (n,)."""
-        return np.asarray(self._store.arrays.elements[indices, NUMBER].astype(np.int64))
+        return np.asarray(self._voxels.elements[indices, NUMBER].astype(np.int64))
 
     @property
     def element_count(self) -> int:
         """Elements ever used: their indices are smaller."""
-        return int(self._store.arrays.counts[USED])
+        return int(self._voxels.counts[USED])
 
     def _used(self) -> Indices:
         """Return the indices of the elements that are no spare ones."""
-        return np.flatnonzero(self._store.arrays.elements[: self.element_count, NUMBER] > 0.0)
+        return np.flatnonzero(self._voxels.elements[: self.element_count, NUMBER] > 0.0)
 
     def _corners(self, blocks: Indices) -> Indices:
         """Return the first voxels (n, 3) of ``blocks`` (n,)."""
-        keys = self._store.arrays.blocks[blocks, KEY]
+        keys = self._voxels.blocks[blocks, KEY]
         return np.asarray(((keys[:, None] >> (42, 21, 0) & 0x1FFFFF) - (1 << 20)) * EDGE)
 
 

@@ -1,4 +1,4 @@
-"""Arrays of the standing map's voxels, which grow with the space that was seen."""
+"""The standing map's voxels: none, and as many as the next scan may need."""
 
 from typing import Any
 
@@ -12,38 +12,36 @@ from idc_controller.perception.voxel_kernels import BLOCKS, CELLS, COLUMNS, EDGE
 _FIRST_PAGES, _FIRST_BLOCKS, _FIRST_ELEMENTS = 16, 4096, 4096
 
 
-class VoxelStore:
-    """The :class:`~idc_controller.perception.voxel_kernels.Voxels` of a map."""
+def no_voxels() -> Voxels:
+    """Return the voxels of a map without scans."""
+    return Voxels(
+        table=np.full((4 * _FIRST_PAGES, 2), -1),
+        pages=np.full((_FIRST_PAGES, PAGE_BLOCKS), -1, dtype=np.int32),
+        blocks=np.zeros((_FIRST_BLOCKS, 4), dtype=np.int64),
+        cells=np.zeros((_FIRST_BLOCKS, CELLS), dtype=np.uint8),
+        links=np.zeros((_FIRST_BLOCKS, CELLS), dtype=np.int32),
+        elements=np.zeros((_FIRST_ELEMENTS, COLUMNS)),
+        counts=np.zeros(5, dtype=np.int64),
+    )
 
-    def __init__(self, voxel: float) -> None:
-        """``voxel``: edge of a voxel (m)."""
-        self._block = EDGE * voxel
-        self.arrays = Voxels(
-            table=np.full((4 * _FIRST_PAGES, 2), -1),
-            pages=np.full((_FIRST_PAGES, PAGE_BLOCKS), -1, dtype=np.int32),
-            blocks=np.zeros((_FIRST_BLOCKS, 4), dtype=np.int64),
-            cells=np.zeros((_FIRST_BLOCKS, CELLS), dtype=np.uint8),
-            links=np.zeros((_FIRST_BLOCKS, CELLS), dtype=np.int32),
-            elements=np.zeros((_FIRST_ELEMENTS, COLUMNS)),
-            counts=np.zeros(5, dtype=np.int64),
-        )
 
-    def reserve(self, origin: Array, returns: Array, free: Array) -> None:
-        """Reserve capacity for all that a scan from ``origin`` (3,) can add.
+def reserved(voxels: Voxels, size: float, origin: Array, returns: Array, free: Array) -> Voxels:
+    """Return ``voxels`` of that ``size`` (m) with capacity for all that a scan from ``origin`` (3,) can add.
 
-        ``returns`` (n, 3) and ends of ``free`` rays (m, 3), NED (m).
-        """
-        blocks, pages = capacity_for(origin, returns, free, self._block)
-        v, number = self.arrays, self.arrays.counts.tolist()
-        if number[PAGES] + pages > len(v.pages):
-            grown = _grown(v.pages, number[PAGES] + pages, -1)
-            v = v._replace(pages=grown, table=np.full((4 << (len(grown) - 1).bit_length(), 2), -1))
-            enter_pages(v.table, v.pages, v.blocks, number[PAGES])
-        if (rows := number[BLOCKS] + blocks) > len(v.blocks):
-            v = v._replace(blocks=_grown(v.blocks, rows), cells=_grown(v.cells, rows), links=_grown(v.links, rows))
-        if (rows := number[USED] + len(returns)) > len(v.elements):
-            v = v._replace(elements=_grown(v.elements, rows))
-        self.arrays = v
+    ``returns`` (n, 3) and ends of ``free`` rays (m, 3), NED (m).
+    """
+    blocks, pages = capacity_for(origin, returns, free, EDGE * size)
+    number = voxels.counts.tolist()
+    if number[PAGES] + pages > len(voxels.pages):
+        grown = _grown(voxels.pages, number[PAGES] + pages, -1)
+        voxels = voxels._replace(pages=grown, table=np.full((4 << (len(grown) - 1).bit_length(), 2), -1))
+        enter_pages(voxels.table, voxels.pages, voxels.blocks, number[PAGES])
+    if (rows := number[BLOCKS] + blocks) > len(voxels.blocks):
+        grown_of = {name: _grown(getattr(voxels, name), rows) for name in ("blocks", "cells", "links")}
+        voxels = voxels._replace(**grown_of)
+    if (rows := number[USED] + len(returns)) > len(voxels.elements):
+        voxels = voxels._replace(elements=_grown(voxels.elements, rows))
+    return voxels
 
 
 def _grown(rows: NDArray[Any], count: int, value: int = 0) -> NDArray[Any]:

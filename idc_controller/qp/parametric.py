@@ -77,10 +77,7 @@ class ParametricQp:
 
 
 def _distinct_up_to_sign(rows: Array) -> tuple[Array, Indices, Array]:
-    """Return the rows (R, q) of which none is another one or its negative as columns (q, D).
-
-    Then which of them each row is (R,), and its sign (R,). Limits both ways have every row twice.
-    """
+    """Return distinct rows as columns (q, D), and which of them each row is (R,), with which sign (R,)."""
     seen: dict[bytes, int] = {}
     which, sign = np.empty(len(rows), dtype=int), np.ones(len(rows))
     for r, row in enumerate(rows):

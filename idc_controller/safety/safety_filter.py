@@ -94,10 +94,7 @@ class AvoidanceFilter:
         return self._trajectory
 
     def _in_force(self, time: float) -> tuple[Array | None, Array]:
-        """Return position to snap (5, 3) at ``time`` (s) of the trajectory in force, and its crackle until then (3,).
-
-        None, and no crackle, where there is none.
-        """
+        """Return position to snap (5, 3) at ``time`` (s) of the trajectory in force (None: none), and its crackle."""
         if self._trajectory is None:
             return None, STEADY
         interval = 0.5 * self.settings.chain.period
@@ -167,10 +164,7 @@ class AvoidanceFilter:
         return max(plans, key=lambda plan: self._clearance(ahead, plan, obstacles))
 
     def _rest(self, start: Array, ahead: Array) -> tuple[Array, Array]:
-        """Return the rest where motion from now on ends for the least cost (5, K + 1, 3), and the state now about it.
-
-        ``start``: the state now about the reference ``ahead``.
-        """
+        """Return the rest where motion ends for the least cost (5, K + 1, 3), and the state now about it (5, 3)."""
         now = start + ahead[:, 0]
         rest = np.zeros_like(ahead)
         rest[0] = self.planner.nearest_rest(now)

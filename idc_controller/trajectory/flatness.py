@@ -1,4 +1,4 @@
-"""Differential flatness: from a payload trajectory to the exact state and set-points along it.
+"""Differential flatness: from a payload trajectory to the exact state and set-points along it, the reference.
 
 With the payload level, its position up to snap fixes everything else: all links are parallel to
 
@@ -116,3 +116,15 @@ def flat_reference(
         p.g, p.p, p.l, p.m, p.attitude_kp, p.attitude_kd, p.motor_time_constant,
     )  # fmt: skip
     return FlatReference(payload, FlatForces(q, q_dot, q_ddot, tension, thrust, on_payload, on_uavs), x, u)
+
+
+class Reference(NamedTuple):
+    """Exact states and set-points along ``trajectory`` under ``load``, for estimator and controller alike."""
+
+    parameters: SystemParameters
+    trajectory: PayloadTrajectory
+    load: Load
+
+    def at(self, times: Array) -> FlatReference:
+        """Reference at ``times`` (K,) (s)."""
+        return flat_reference(self.parameters, self.trajectory, np.asarray(times, dtype=float), self.load)

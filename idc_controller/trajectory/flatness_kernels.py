@@ -18,15 +18,7 @@ def _fading(square: float, limit: float) -> tuple[float, float, float]:
 
 @inlined
 def _drag_along(derivatives: Array, j: int, wind: Array, coefficients: Array, limit: float) -> Array:
-    """Return the drag on the payload and its first two derivatives in time (3, 3) (N, NED) at instant ``j``.
-
-    Args:
-        derivatives: of the payload's position, up to jerk (4 or more, G, 3).
-        j: index of the instant.
-        wind: velocity of the air (3,) (m/s, NED).
-        coefficients: 1/2 rho c_d A of the payload's silhouettes along x, y, z (3,) (kg/m).
-        limit: to which the drag fades (N).
-    """
+    """Return the drag on the payload and its first two derivatives in time (3, 3) (N, NED) at instant ``j``."""
     u, u_1, u_2 = np.empty(3), np.empty(3), np.empty(3)
     s = s_1 = s_2 = 0.0
     for c in range(3):
@@ -101,26 +93,9 @@ def _forces(
     l: Array,
     m: Array,
 ) -> tuple[Array, Array, Array, Array, Array]:
-    """Return links and UAV forces along a trajectory at G instants; N UAVs, NED, SI.
+    """Return links, tensions, forces on the payload and thrusts at G instants, see :func:`flat_map`.
 
-    Args:
-        derivatives: of the payload's position, up to snap (5, G, 3).
-        mass: of the payload (kg).
-        force: constant force on the payload (3,) (N).
-        uav_force: on each UAV (N, 3) (N).
-        has_air: whether there is drag; the four arguments that follow are of :class:`idc_controller.model.drag.Air`.
-        wind: velocity of the air (3,) (m/s).
-        payload_drag: coefficients of the payload (3,) (kg/m).
-        uav_drag: coefficient of a UAV (kg/m).
-        drag_limit: of the payload's drag (N).
-        g: m/s2.
-        p: attachment points (N, 3) (m).
-        l: lengths of the links (N,) (m).
-        m: masses of the UAVs (N,) (kg).
-
-    Returns:
-        Link directions from UAV to payload with two derivatives (3, G, 3), tensions (G, N) (N), forces on the payload
-        (G, 3) (N), thrust vectors of the UAVs (G, N, 3) (N), and what the air adds to the force on each UAV (G, 3) (N).
+    Then what the air adds to the force on each UAV (G, 3) (N).
     """
     G, N = derivatives.shape[1], len(m)
     links, tension = np.empty((3, G, 3)), np.empty((G, N))
@@ -173,16 +148,7 @@ def _forces(
 def _states(
     derivatives: Array, links: Array, thrust: Array, index: Indices, h: float, kp: float, kd: float, T_m: float
 ) -> tuple[Array, Array]:
-    """Return the states (K, 12 + 11 N) and set-points (K, 3 N) of the reference at K times.
-
-    Args:
-        derivatives: of the payload's position (5, G, 3).
-        links: link directions with two derivatives (3, G, 3).
-        thrust: thrust vectors (G, N, 3) (N).
-        index: instants of the five points of the stencil about each time (K, 5).
-        h: spacing of these points (s).
-        kp, kd, T_m: of the attitude loop and the motors, which are inverted: the set-point leads the attitude.
-    """
+    """Return the states (K, 12 + 11 N) and set-points (K, 3 N) of the reference at K times."""
     K, N = len(index), thrust.shape[1]
     x, u = np.zeros((K, 12 + 11 * N)), np.empty((K, 3 * N))
     s, s_dot, n_at, n_dot_at, n_acc_at, f_at = 12, 12 + 2 * N, 12 + 4 * N, 12 + 6 * N, 12 + 8 * N, 12 + 10 * N
@@ -243,8 +209,12 @@ def flat_map(
         derivatives: of the payload's position at G instants, up to snap (5, G, 3).
         index: instants of the five points of the stencil about each time (K, 5).
         h: spacing of these points (s).
-        mass ... m: see ``_forces``.
-        kp, kd, T_m: see ``_states``.
+        mass: of the payload (kg).
+        force, uav_force: constant forces on the payload (3,) and on each UAV (N, 3) (N).
+        has_air: whether there is drag; the four arguments that follow are of :class:`idc_controller.model.drag.Air`.
+        g, p, l, m: gravity, attachment points, lengths of the links and masses of the UAVs, see
+            :class:`~idc_controller.parameters.SystemParameters`.
+        kp, kd, T_m: of the attitude loop and the motors, which are inverted: the set-point leads the attitude.
 
     Returns:
         States (K, 12 + 11 N), set-points (K, 3 N), derivatives of the payload's position (5, K, 3), link directions

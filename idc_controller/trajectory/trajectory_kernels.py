@@ -78,16 +78,7 @@ def _polynomial(coefficients: Array, knots: Array, time: float, values: Array) -
 
 @inlined
 def _phase(coefficients: Array, knots: Array, times: Array, order: int) -> Array:
-    """Return a piecewise polynomial and its derivatives (order + 1, K), at rest at the first and the last knot.
-
-    There and beyond them the derivatives are exactly zero.
-
-    Args:
-        coefficients: (degree + 1, pieces), highest power first.
-        knots: between the pieces (pieces + 1,) (s).
-        times: (K,) (s).
-        order: highest derivative.
-    """
+    """Return a piecewise polynomial and its derivatives (order + 1, K), exactly at rest from both ends on."""
     result = np.zeros((order + 1, len(times)))
     values = np.empty(order + 1)
     for i, time in enumerate(times):
@@ -142,7 +133,8 @@ def figure_eight_at(curve: Array, coefficients: Array, knots: Array, times: Arra
 
     Args:
         curve: see :func:`figure_eight`.
-        coefficients, knots: of the phase, which rests before and after; see ``_phase``.
+        coefficients: of the polynomials of the phase (degree + 1, pieces), highest power first.
+        knots: between the pieces (pieces + 1,) (s); before and after them it rests.
         times: (K,) (s).
         order: highest derivative.
     """

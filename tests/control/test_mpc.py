@@ -19,8 +19,7 @@ from idc_controller.control.settings import MpcSettings, MpcTuning
 from idc_controller.errors import SolverError
 from idc_controller.model.linear import LinearModel
 from idc_controller.qp.parametric import ParametricQp
-from idc_controller.trajectory.flatness import Load
-from idc_controller.trajectory.reference import Reference
+from idc_controller.trajectory.flatness import Load, Reference
 from idc_controller.trajectory.trajectory import RestTrajectory
 
 pytestmark = pytest.mark.numerics

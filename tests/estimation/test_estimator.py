@@ -9,8 +9,7 @@ from estimator_scene import HOVER, INTERVAL, LAYOUT, MODEL, REFERENCE, P, all_sa
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.measurements import PAYLOAD, Position
 from idc_controller.estimation.settings import EstimatorSettings
-from idc_controller.trajectory.flatness import Load
-from idc_controller.trajectory.reference import Reference
+from idc_controller.trajectory.flatness import Load, Reference
 
 
 def test_estimate_is_independent_of_order_of_arrival():

@@ -32,8 +32,7 @@ from idc_controller.model.drag import Air, drag_coefficients
 from idc_controller.model.linear import LinearModel
 from idc_controller.rotations import rotation_from_quaternion
 from idc_controller.safety.filter_protocol import NoObstacles
-from idc_controller.trajectory.flatness import Load
-from idc_controller.trajectory.reference import Reference
+from idc_controller.trajectory.flatness import Load, Reference
 from idc_controller.trajectory.stop_plan import stop_plan
 from idc_controller.trajectory.trajectory import RestTrajectory
 from vehicle_sim.autopilot.setpoints import read_setpoint, read_stop_plan

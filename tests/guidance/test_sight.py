@@ -183,7 +183,7 @@ def test_unseen_cells_are_those_of_the_plain_formula(seed):
     before, middles = seen.unseen(path, body, 10_000)
     found = np.empty((10_000, 4))
     plain = unseen_cells.py_func(
-        seen._store.arrays, path, body, settings.voxel, settings.sight_width, settings.sight_rays, found
+        seen._voxels, path, body, settings.voxel, settings.sight_width, settings.sight_rays, found
     )
     assert plain == len(before) > 0
     np.testing.assert_array_equal(found[:plain, 0], before)
@@ -214,7 +214,7 @@ def test_way_behind_a_wall_is_hidden():
     path, heights = np.linspace([0.5, 0.0, 0.0], [6.0, 0.0, 0.0], 23), np.zeros(1)
     index = seen.first_hidden(path, np.zeros((1, 3)), heights)
     assert 3.0 <= path[index, 0] <= 3.8
-    plain = first_hidden.py_func(seen._store.arrays, path, np.zeros((1, 3)), heights, 0.25)
+    plain = first_hidden.py_func(seen._voxels, path, np.zeros((1, 3)), heights, 0.25)
     assert plain == index
     # Another sensor sees round it.
     assert seen.first_hidden(path, np.array([[0.0, 0.0, 0.0], [4.5, 5.0, 0.0]]), heights) == len(path)

@@ -53,7 +53,7 @@ def test_no_point_that_was_hit_is_lost_while_it_stands(bodies):
     standing, sensor = StandingMap(), Sensor(np.random.default_rng(1), ground=0.0)
     hits = fill(standing, sensor, bodies, (0.0, 0.0, -4.0), 0.0, 5.0)
     assert len(hits) > 200
-    bounds = standing._store.arrays.elements[occupied(standing).indices, LOW : HIGH + 3]
+    bounds = standing._voxels.elements[occupied(standing).indices, LOW : HIGH + 3]
     lost = hits[~is_occupied(standing, hits)]
     assert len(lost) < 0.03 * len(hits)
     checked = np.concatenate([lost, hits[:: 1 + len(hits) // 200]])
@@ -202,11 +202,11 @@ def test_returns_of_what_moves_leave_no_points_but_free_what_they_pass():
 def test_memory_follows_the_space_that_was_seen():
     standing, sensor = StandingMap(), Sensor(np.random.default_rng(6), rays=200)
     fill(standing, sensor, [], (0.0, 0.0, -4.0), 0.0, 20.0)
-    blocks = standing._store.arrays.counts[0]
+    blocks = standing._voxels.counts[0]
     # A ball of 11 m radius in blocks of 2 m, all that it cuts included.
     assert blocks < 4.19 * 13.0**3 / 8.0
     fill(standing, sensor, [], (0.0, 0.0, -4.0), 20.0, 30.0)
-    assert standing._store.arrays.counts[0] < 1.2 * blocks
+    assert standing._voxels.counts[0] < 1.2 * blocks
 
 
 def test_map_keeps_what_it_holds_when_its_arrays_grow():

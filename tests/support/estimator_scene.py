@@ -8,8 +8,7 @@ from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from idc_controller.estimation.settings import EstimatorSettings
 from idc_controller.model.linear import LinearModel
-from idc_controller.trajectory.flatness import Load
-from idc_controller.trajectory.reference import Reference
+from idc_controller.trajectory.flatness import Load, Reference
 from idc_controller.trajectory.trajectory import RestTrajectory
 
 MODEL = LinearModel(read_system(MISSIONS / "system.toml").parameters())

@@ -145,7 +145,7 @@ def occupied(standing):
 
 def cells_at(standing, points):
     """What a standing map holds of the voxels with ``points`` (n, 3): rays that passed, with :data:`HELD` if hit."""
-    store, voxels = standing._store.arrays, np.floor(points / standing.settings.voxel).astype(int)
+    store, voxels = standing._voxels, np.floor(points / standing.settings.voxel).astype(int)
     count = int(store.counts[BLOCKS])
     corners = [tuple(corner) for corner in standing._corners(np.arange(count)).tolist()]
     rows = dict(zip(corners, store.cells, strict=False))

@@ -14,7 +14,7 @@ import numpy as np
 
 from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.estimation.health.chi_squared import lower_quantile, upper_quantile
-from idc_controller.estimation.health.innovation_monitor_kernels import exceeded, running_means
+from idc_controller.estimation.health.innovation_monitor_kernels import running_means
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, SensorKey
 from idc_controller.estimation.settings import InnovationMonitorSettings
 
@@ -112,16 +112,17 @@ class InnovationMonitor:
     def findings(self, time: float) -> dict[SensorKey, list[Finding]]:
         """Return what is wrong with sensors at ``time`` (s)."""
         s, statistics = self._settings, self._statistics
-        found_any, biased, noisy = exceeded(
-            statistics.mean, statistics.square, statistics.mean_limits, statistics.square_limits
-        )
+        squares = (statistics.mean.reshape(-1, 2, 3) ** 2).sum(axis=2)
+        totals = np.column_stack([squares.sum(axis=1), squares])
+        biased = np.asarray((totals > statistics.mean_limits).any(axis=1))
+        noisy = np.asarray((statistics.square > statistics.square_limits).any(axis=1))
         for entry, times in tuple(self._rejections.items()):
             while times and time - times[0] > s.rejection_time:
                 times.popleft()
             if not times:
                 del self._rejections[entry]
         found: dict[SensorKey, list[Finding]] = defaultdict(list)
-        if self._rejections or found_any:
+        if self._rejections or biased.any() or noisy.any():
             for entry, at in self._sensors.items():
                 factor = s.manoeuvre_factor if statistics.of_uav_attitude[at] else 1.0
                 if len(self._rejections.get(entry, ())) >= factor * s.rejections:

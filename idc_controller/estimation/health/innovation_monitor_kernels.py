@@ -50,27 +50,3 @@ def running_means(
                 square[at, part] += share * (min(squares[part], gates[rows]) / rows - square[at, part])
         first += size
     return new
-
-
-@kernel(
-    "Tuple((boolean, boolean[::1], boolean[::1]))(float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1])"
-)
-def exceeded(mean: Array, square: Array, mean_limits: Array, square_limits: Array) -> tuple[bool, Mask, Mask]:
-    """Return whether a running mean is too large, and of which of S sensors the innovation (S,) and the square (S,).
-
-    Args:
-        mean, square: running means of :func:`running_means`.
-        mean_limits: largest square sums of ``mean``, of all rows and of each channel (S, 3).
-        square_limits: largest values of ``square`` (S, 3).
-    """
-    biased, noisy, found = np.zeros(len(square), np.bool_), np.zeros(len(square), np.bool_), False
-    for at in range(len(square)):
-        totals = np.zeros(3)
-        for c in range(6):
-            totals[0] += mean[at, c] * mean[at, c]
-            totals[1 + c // 3] += mean[at, c] * mean[at, c]
-        for part in range(3):
-            biased[at] |= totals[part] > mean_limits[at, part]
-            noisy[at] |= square[at, part] > square_limits[at, part]
-        found = found or biased[at] or noisy[at]
-    return found, biased, noisy
