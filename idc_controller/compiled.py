@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cache
 from types import CodeType, ModuleType
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar, cast, get_args, get_origin, get_type_hints
 
 import numba
 import numpy as np
@@ -13,37 +13,45 @@ from numba.core import config as numba_config
 from numba.core import types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
 from numba.misc.appdirs import AppDirs
+from numba.np.numpy_support import from_dtype
 
 from idc_controller import uncompiled
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 _CONFIG: Any = numba_config
 
-VECTOR, MATRIX, CUBE = (f"Array(float64, {axes}, 'C', readonly=True)" for axes in (1, 2, 3))
-"""Types in the signature of a kernel: arrays that it only reads."""
+_NUMBERS = {float: types.float64, int: types.int64, bool: types.boolean, type(None): types.none}
 
 
-def kernel(signature: str, **named: Any) -> Callable[[Function], Function]:
-    """Compile a function for one signature, e.g. ``"float64(float64[:], float64[:, ::1])"``.
-
-    ``named``: types of the signature that are not numba's own, by the names that they have there.
+def kernel(function: Function) -> Function:
+    """Compile a function for the types that its annotations name: numbers, contiguous arrays, and tuples of these.
 
     One signature, given beforehand: nothing is ever compiled in flight, and arguments of another type raise TypeError.
     Arithmetic keeps its order (no fast math), and a division by zero gives inf or nan as in numpy. The function itself
     stays at hand as attribute ``py_func``. Modules of kernels are named ``*kernels.py``: installation compiles them all
     (``python -m vehicle_sim.app.compile_kernels``).
     """
+    dispatcher: Any = inlined(function)
+    if dispatcher is not function:  # as it is with NUMBA_DISABLE_JIT
+        cache: Any = _KernelCache
+        dispatcher._cache = cache(function)
+        *arguments, result = map(_type_of, get_type_hints(function, include_extras=True).values())
+        dispatcher.compile(result(*arguments))
+        dispatcher.disable_compile()
+    return cast(Function, dispatcher)
 
-    def compiled(function: Function) -> Function:
-        dispatcher: Any = inlined(function)
-        if dispatcher is not function:  # as it is with NUMBA_DISABLE_JIT
-            cache: Any = _KernelCache
-            dispatcher._cache = cache(function)
-            dispatcher.compile(eval(signature, {}, {**vars(types), **named}))
-            dispatcher.disable_compile()
-        return cast(Function, dispatcher)
 
-    return compiled
+def _type_of(hint: Any) -> Any:
+    """Return numba's type for an annotation of a kernel; the arrays are those of :mod:`idc_controller.arrays`."""
+    if hint in _NUMBERS:
+        return _NUMBERS[hint]
+    if hasattr(hint, "_fields"):
+        return types.NamedTuple([_type_of(of) for of in get_type_hints(hint, include_extras=True).values()], hint)
+    if get_origin(hint) is tuple:
+        return types.Tuple([_type_of(of) for of in get_args(hint)])
+    array, layout = get_args(hint)
+    (dtype,) = get_args(get_args(array)[1])
+    return types.Array(from_dtype(np.dtype(dtype)), layout.axes, "C", readonly=layout.is_read_only)
 
 
 def inlined(function: Function) -> Function:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcs.mavlink.frames import SIGNATURE, SIGNED, V1, V2
+from idc_controller.arrays import Cells1, Cells2, Indices1, Indices2
 from idc_controller.compiled import inlined, kernel
 
 Bytes = NDArray[np.uint8]
@@ -78,8 +79,8 @@ def _frames_in_run(datagram: Bytes, start: int, extra: int) -> int:
     return count
 
 
-@kernel("Tuple((int64[:, ::1], int64, int64))(uint8[::1], int64[:, ::1], int64)")
-def messages_in(datagram: Bytes, kinds: Rows, bad_limit: int) -> tuple[Rows, int, int]:
+@kernel
+def messages_in(datagram: Cells1, kinds: Indices2, bad_limit: int) -> tuple[Indices2, int, int]:
     """Return the messages of a datagram in order, with the numbers of bad frames and of bytes outside any frame.
 
     A frame with a wrong checksum or unknown flags is bad, and the next is looked for from its second byte on. One of an
@@ -151,8 +152,8 @@ def messages_in(datagram: Bytes, kinds: Rows, bad_limit: int) -> tuple[Rows, int
     return found[:count], bad, skipped
 
 
-@kernel("uint8[:, ::1](uint8[::1], uint8[:, ::1], int64)")
-def framed_run(header: Bytes, payloads: Bytes, extra: int) -> Bytes:
+@kernel
+def framed_run(header: Cells1, payloads: Cells2, extra: int) -> Cells2:
     """Return the frames (n, length + 12) of payloads of one length (n, length).
 
     ``header`` (10,) of the first frame; the sequence number rises by one from each to the next. ``extra``: last byte
@@ -170,8 +171,8 @@ def framed_run(header: Bytes, payloads: Bytes, extra: int) -> Bytes:
     return frames
 
 
-@kernel("uint8[::1](uint8[::1], int64[::1], int64[::1])")
-def stamped_frames(data: Bytes, ends: NDArray[np.int64], stamps: NDArray[np.int64]) -> Bytes:
+@kernel
+def stamped_frames(data: Cells1, ends: Indices1, stamps: Indices1) -> Cells1:
     """Return every frame that :func:`gcs.mavlink.frames.spans` finds in datagrams, each behind its datagram's stamp.
 
     Bytes that belong to no frame are left out.

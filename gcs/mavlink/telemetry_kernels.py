@@ -3,14 +3,13 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from idc_controller.arrays import Array, Mask
+from idc_controller.arrays import Array2, Floats2, Mask1, Mask2
 from idc_controller.compiled import kernel
 
 
-@kernel("Tuple((float64[:, ::1], boolean[:, ::1]))(float32[:, ::1], boolean[::1])")
-def poses_and_motions(fields: NDArray[np.float32], is_attitude: Mask) -> tuple[Array, Mask]:
+@kernel
+def poses_and_motions(fields: Floats2, is_attitude: Mask1) -> tuple[Array2, Mask2]:
     """Return poses and motions in ATTITUDE_QUATERNION and LOCAL_POSITION_NED.
 
     Args:

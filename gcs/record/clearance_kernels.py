@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Array1, Array2, Array3
 from idc_controller.compiled import inlined, kernel
 from idc_controller.geometry.gjk_kernels import dot, nearest_on_simplex
 
@@ -70,22 +70,19 @@ def _obstacle_support(corners: Array, box: Array, rotation: Array, offset: Array
     return offset + _turned(rotation, point)
 
 
-@kernel(
-    "void(float64[:, ::1], float64[:, :, ::1], float64[:, :, ::1], float64[:, :, ::1], float64, "
-    "float64[:, ::1], float64[::1], float64[:, ::1], float64[:, ::1], float64[::1], float64[::1])"
-)
+@kernel
 def lower_clearance(
-    vertices: Array,
-    rotations: Array,
-    discs: Array,
-    axes: Array,
+    vertices: Array2,
+    rotations: Array3,
+    discs: Array3,
+    axes: Array3,
     radius: float,
-    corners: Array,
-    box: Array,
-    rotation: Array,
-    offsets: Array,
-    way: Array,
-    least: Array,
+    corners: Array2,
+    box: Array1,
+    rotation: Array2,
+    offsets: Array2,
+    way: Array1,
+    least: Array1,
 ) -> None:
     """Lower ``least`` (T,) (m) to the distance between hull and obstacle, 0 where they meet, where that is less.
 

@@ -2,10 +2,8 @@
 
 import numpy as np
 
-from idc_controller.arrays import Array, Indices
-from idc_controller.compiled import CUBE, MATRIX, VECTOR, inlined, kernel
-
-_COLUMNS = "Array(int64, 2, 'C', readonly=True)"
+from idc_controller.arrays import Array, Array1, Array2, Const1, Const2, Const3, ConstIndices2, Indices, Indices1
+from idc_controller.compiled import inlined, kernel
 
 
 @inlined
@@ -30,22 +28,20 @@ def _state(x: Array, first: Array, columns: Indices, coefficients: Array, B: Arr
     return result
 
 
-@kernel(f"float64[::1]({VECTOR}, {MATRIX}, {MATRIX}, {VECTOR}, {_COLUMNS}, {MATRIX}, {MATRIX}, {VECTOR})")
+@kernel
 def propagated_state(
-    x: Array, dense: Array, push: Array, direction: Array, columns: Indices, coefficients: Array, B: Array, u: Array
-) -> Array:
+    x: Const1, dense: Const2, push: Const2, direction: Const1, columns: ConstIndices2, coefficients: Const2, B: Const2,
+    u: Const1,
+) -> Array1:  # fmt: skip
     """Return the state of :func:`propagated` alone (n,)."""
     return _state(x, _dense_rows(dense, push, direction), columns, coefficients, B, u)
 
 
-@kernel(
-    f"Tuple((float64[::1], float64[:, ::1]))({VECTOR}, {MATRIX}, {MATRIX}, {MATRIX}, {VECTOR}, {_COLUMNS}, "
-    f"{MATRIX}, {MATRIX}, {VECTOR}, {MATRIX}, {VECTOR}, {VECTOR})"
-)
+@kernel
 def propagated(
-    x: Array, P: Array, dense: Array, push: Array, direction: Array, columns: Indices, coefficients: Array, B: Array,
-    u: Array, Q: Array, change: Array, probability: Array,
-) -> tuple[Array, Array]:  # fmt: skip
+    x: Const1, P: Const2, dense: Const2, push: Const2, direction: Const1, columns: ConstIndices2, coefficients: Const2,
+    B: Const2, u: Const1, Q: Const2, change: Const1, probability: Const1,
+) -> tuple[Array1, Array2]:  # fmt: skip
     """Return the state F x + B u (n,) and its covariance F P F' + Q (n, n) after an interval.
 
     The first rows of F are dense: payload and links move by all states. The others have few elements, none of them in
@@ -110,10 +106,10 @@ def propagated(
     return result, covariance
 
 
-@kernel(f"float64[::1]({_MATRIX}, {_MATRIX}, {_MATRIX}, {_VECTOR}, {_MATRIX}, {_MATRIX}, {_VECTOR}, {_VECTOR})")
+@kernel
 def propagated_variances(
-    P: Array, dense: Array, push: Array, direction: Array, B: Array, Q: Array, change: Array, probability: Array
-) -> Array:
+    P: Const2, dense: Const2, push: Const2, direction: Const1, B: Const2, Q: Const2, change: Const1, probability: Const1
+) -> Array1:
     """Return the first elements of the diagonal of the covariance of :func:`propagated` (r,).
 
     Args:
@@ -137,8 +133,8 @@ def propagated_variances(
     return variances
 
 
-@kernel("void(float64[:, ::1], int64, int64[::1], float64)")
-def add_variances(P: Array, first: int, uavs: Indices, variance: float) -> None:
+@kernel
+def add_variances(P: Array2, first: int, uavs: Indices1, variance: float) -> None:
     """Add a ``variance`` to those of two states of each of ``uavs`` (K,) in the covariance ``P`` (n, n).
 
     ``first``: index of the first UAV's two states; those of the others follow.
@@ -148,10 +144,11 @@ def add_variances(P: Array, first: int, uavs: Indices, variance: float) -> None:
             P[state, state] += variance
 
 
-@kernel(f"float64[::1]({VECTOR}, {VECTOR}, {VECTOR}, {_COLUMNS}, {MATRIX}, {MATRIX}, int64, int64)")
+@kernel
 def defect(
-    before: Array, after: Array, u: Array, columns: Indices, coefficients: Array, B: Array, first: int, end: int
-) -> Array:
+    before: Const1, after: Const1, u: Const1, columns: ConstIndices2, coefficients: Const2, B: Const2,
+    first: int, end: int,
+) -> Array1:  # fmt: skip
     """Return by how much the states ``first`` to ``end`` of a reference miss the model's after an interval (n,).
 
     That is F x_k + B u_k - x_k+1 in these states, which only depend on each other and on the input; 0 in all others.
@@ -174,8 +171,8 @@ def defect(
     return result
 
 
-@kernel(f"boolean({VECTOR}, {MATRIX})")
-def are_finite(x: Array, P: Array) -> bool:
+@kernel
+def are_finite(x: Const1, P: Const2) -> bool:
     """Return whether state (n,) and covariance (n, n) are numbers."""
     total = 0.0 * x  # zero times inf or nan is nan
     for row in range(len(P)):
@@ -184,13 +181,10 @@ def are_finite(x: Array, P: Array) -> bool:
     return not np.isnan(total).any()
 
 
-@kernel(
-    "Tuple((float64[:, ::1], float64[:, ::1], float64[:, ::1]))"
-    f"({MATRIX}, {MATRIX}, {CUBE}, {MATRIX}, {CUBE}, float64, float64)"
-)
+@kernel
 def about_reference(
-    x: Array, u: Array, payload: Array, on_payload: Array, on_uavs: Array, g: float, mass_excess: float
-) -> tuple[Array, Array, Array]:
+    x: Const2, u: Const2, payload: Const3, on_payload: Const2, on_uavs: Const3, g: float, mass_excess: float
+) -> tuple[Array2, Array2, Array2]:
     """Return what the error state is about: set-points, direction of the force of mass, and state of the reference.
 
     The drag that is predicted changes with the velocity, so what is estimated of it is the rest.

@@ -7,8 +7,20 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Indices, Mask
-from idc_controller.compiled import CUBE, MATRIX, VECTOR, inlined, kernel
+from idc_controller.arrays import (
+    Array,
+    Array1,
+    Array2,
+    Const1,
+    Const2,
+    Const3,
+    Indices,
+    Indices1,
+    Indices2,
+    Mask,
+    Mask1,
+)
+from idc_controller.compiled import inlined, kernel
 
 
 @inlined
@@ -86,16 +98,12 @@ def predicted(
     return residual, covariance
 
 
-@kernel(
-    f"Tuple((float64[:, ::1], float64[::1], float64[:, ::1]))({VECTOR}, int64[::1], boolean[::1], {MATRIX}, {CUBE}, "
-    f"{MATRIX}, {MATRIX}, int64, {MATRIX}, {VECTOR}, int64[:, ::1], {MATRIX}, int64[::1], int64[::1], "
-    f"int64[::1], int64[::1], {VECTOR}, {MATRIX})"
-)
+@kernel
 def innovations(
-    values: Array, sources: Indices, is_position: Mask, reference: Array, payload: Array, q: Array, q_dot: Array,
-    k: int, p: Array, l: Array, columns: Indices, coefficients: Array, uavs: Indices, heights: Indices,
-    starts: Indices, sizes: Indices, x: Array, P: Array,
-) -> tuple[Array, Array, Array]:  # fmt: skip
+    values: Const1, sources: Indices1, is_position: Mask1, reference: Const2, payload: Const3, q: Const2, q_dot: Const2,
+    k: int, p: Const2, l: Const1, columns: Indices2, coefficients: Const2, uavs: Indices1, heights: Indices1,
+    starts: Indices1, sizes: Indices1, x: Const1, P: Const2,
+) -> tuple[Array2, Array1, Array2]:  # fmt: skip
     """Return the innovations of K measurements, and the coefficients of the rows that observe the error there.
 
     A change of the lateral part of a tilted link changes its height too.
@@ -130,13 +138,10 @@ def innovations(
     return tilted, residual, covariance
 
 
-@kernel(
-    f"Tuple((float64[::1], float64[:, ::1], float64))({MATRIX}, float64[::1], int64[:, ::1], float64[:, ::1], "
-    "float64[::1], float64)"
-)
+@kernel
 def corrected(
-    P: Array, residual: Array, columns: Indices, coefficients: Array, variance: Array, cancelled: float
-) -> tuple[Array, Array, float]:
+    P: Const2, residual: Array1, columns: Indices2, coefficients: Array2, variance: Array1, cancelled: float
+) -> tuple[Array1, Array2, float]:
     """Correct by the rows of independent noise one after the other, which equals the correction by all at once.
 
     Each takes p p' / s from the covariance, with p = P h and s = h' P h + its variance: the squares of the diagonal of
@@ -215,13 +220,10 @@ def _normalise(residual: Array, covariance: Array, variance: Array, first: int, 
     return total
 
 
-@kernel(
-    "Tuple((float64[::1], float64[::1], boolean[::1], boolean[::1], float64[:, ::1]))"
-    "(float64[::1], float64[:, ::1], float64[::1], int64[::1], int64[::1], float64[::1])"
-)
+@kernel
 def gated(
-    residual: Array, covariance: Array, variance: Array, starts: Indices, sizes: Indices, limits: Array
-) -> tuple[Array, Array, Mask, Mask, Array]:
+    residual: Array1, covariance: Array2, variance: Array1, starts: Indices1, sizes: Indices1, limits: Array1
+) -> tuple[Array1, Array1, Mask1, Mask1, Array2]:
     """Test the innovations of K measurements, each by its own block of the covariance.
 
     Args:
@@ -258,8 +260,8 @@ def gated(
     return normalised, mean_squares, accepted, rows, ratios
 
 
-@kernel("UniTuple(float64, 2)(float64[::1], float64[::1], boolean[::1], boolean[::1])")
-def mean_products(normalised: Array, last: Array, accepted: Mask, of_payload: Mask) -> tuple[float, float]:
+@kernel
+def mean_products(normalised: Array1, last: Array1, accepted: Mask1, of_payload: Mask1) -> tuple[float, float]:
     """Return the mean product of two normalised innovations (m,), over the payload's rows and over the UAVs'.
 
     Args:

@@ -4,14 +4,14 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array
-from idc_controller.compiled import MATRIX, VECTOR, kernel
+from idc_controller.arrays import Array1, Array2, Const1, Const2
+from idc_controller.compiled import kernel
 
 
-@kernel(
-    f"float64[:, ::1](float64[::1], float64[::1], float64[::1], float64[::1], {MATRIX}, {VECTOR})",
-)
-def vehicle_states(payload: Array, links: Array, thrusts: Array, thrusts_dot: Array, p: Array, l: Array) -> Array:
+@kernel
+def vehicle_states(
+    payload: Array1, links: Array1, thrusts: Array1, thrusts_dot: Array1, p: Const2, l: Const1
+) -> Array2:
     """Return position, velocity, quaternion and body rates (N, 13) of the UAVs, heading north; NED, SI.
 
     Args:

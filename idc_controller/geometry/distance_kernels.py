@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Indices
+from idc_controller.arrays import Array, Array1, Array2, Array3, Indices1
 from idc_controller.compiled import inlined, kernel
 
 
@@ -30,8 +30,8 @@ def distance_to(bodies: Array, b: int, x: float, y: float, z: float) -> float:
     return float(math.sqrt(u * u + v * v + beyond * beyond) + inside - bodies[b, 4])
 
 
-@kernel("float64[:, ::1](float64[:, ::1], float64[:, :, ::1])")
-def distances_of_offsets(bodies: Array, offsets: Array) -> Array:
+@kernel
+def distances_of_offsets(bodies: Array2, offsets: Array3) -> Array2:
     """Return signed distances (B, n) (m) of points (B, n, 3) about the centres of ``bodies`` (B, 14), world axes."""
     count, n = offsets.shape[0], offsets.shape[1]
     distance = np.empty((count, n))
@@ -41,10 +41,10 @@ def distances_of_offsets(bodies: Array, offsets: Array) -> Array:
     return distance
 
 
-@kernel("float64[:, ::1](float64[:, ::1], float64[::1], float64[:, ::1], float64[:, ::1], int64[::1], float64)")
+@kernel
 def mean_distances_of_groups(
-    bodies: Array, reach: Array, centres: Array, points: Array, starts: Indices, far: float
-) -> Array:
+    bodies: Array2, reach: Array1, centres: Array2, points: Array2, starts: Indices1, far: float
+) -> Array2:
     """Return the mean distance of the points of G groups from the surfaces of B bodies (G, B) (m), inf without points.
 
     Args:

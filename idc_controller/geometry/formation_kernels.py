@@ -2,16 +2,14 @@
 
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array1, Array2, Array3
 from idc_controller.compiled import kernel
 
 
-@kernel(
-    "float64[:, :, ::1](float64[:, ::1], float64[:, :, ::1], float64[:, ::1], float64[::1], float64, float64[:, ::1])"
-)
+@kernel
 def hull_points(
-    corners: Array, rims: Array, hover_offsets: Array, lengths: Array, g: float, acceleration: Array
-) -> Array:
+    corners: Array2, rims: Array3, hover_offsets: Array2, lengths: Array1, g: float, acceleration: Array2
+) -> Array3:
     """Return the points about the payload's centre whose hull is the formation (K, C + N R, 3) (m).
 
     Args:

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.arrays import Array, Array2, Array3, Indices1, Mask1, Mask2
 from idc_controller.compiled import inlined, kernel
 
 _TIGHT, _TIGHT_ROUND = 1e-13, 1e-9
@@ -166,22 +166,19 @@ def _distance(points: Array, bodies: Array, b: int, offset: Array, v: Array) -> 
     return distance if gap <= _CERTAIN * distance else -1.0
 
 
-@kernel(
-    "Tuple((float64[:, ::1], boolean[:, ::1]))(float64[:, :, ::1], int64[::1], float64[:, :, ::1], float64[:, ::1],"
-    " float64[:, :, ::1], float64[:, ::1], float64[:, ::1], boolean[::1], float64, float64)"
-)
+@kernel
 def measure_distances(
-    points: Array,
-    indices: Indices,
-    offsets: Array,
-    bounds: Array,
-    normals: Array,
-    growth: Array,
-    bodies: Array,
-    rounded: Mask,
+    points: Array3,
+    indices: Indices1,
+    offsets: Array3,
+    bounds: Array2,
+    normals: Array3,
+    growth: Array2,
+    bodies: Array2,
+    rounded: Mask1,
     least: float,
     limit: float,
-) -> tuple[Array, Mask]:
+) -> tuple[Array2, Mask2]:
     """Return the signed distances (F, K) (m) of F bodies from a hull at its stages, and where they are missing (F, K).
 
     They are missing where the hull overlaps the core of the body, and where the body is no rounded box. ``normals``

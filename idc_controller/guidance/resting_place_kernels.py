@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Array1, Array2, Array3
 from idc_controller.compiled import inlined, kernel
 from idc_controller.geometry.distance_kernels import distance_to
 
@@ -22,22 +22,19 @@ def _point_on_quartic(control: Array, share: float, axis: int) -> float:
     )
 
 
-@kernel(
-    "float64[::1](float64[:, :, ::1], float64[::1], float64[::1], float64[::1], float64,"
-    " float64[:, ::1], float64[::1], float64[:, :, ::1], float64[:, ::1], float64)"
-)
+@kernel
 def least_distances(
-    control: Array,
-    durations: Array,
-    elapsed: Array,
-    axis: Array,
+    control: Array3,
+    durations: Array1,
+    elapsed: Array1,
+    axis: Array1,
     step: float,
-    bodies: Array,
-    reach: Array,
-    centres: Array,
-    growth: Array,
+    bodies: Array2,
+    reach: Array1,
+    centres: Array3,
+    growth: Array2,
     limit: float,
-) -> Array:
+) -> Array1:
     """Return the least distance (m) of points to obstacles for each of C paths (C,), at most ``limit`` (m).
 
     The points are those of the formation's upright axis on its path, each at its own moment, and from the place of

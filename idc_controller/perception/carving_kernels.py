@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Indices
+from idc_controller.arrays import Array, Array1, Array2, Indices1
 from idc_controller.compiled import inlined, kernel
 from idc_controller.perception.element_kernels import free_element, halve_memory
 from idc_controller.perception.normal_kernels import surface_normal
@@ -26,7 +26,6 @@ from idc_controller.perception.voxel_kernels import (
     PROVEN,
     SCATTER,
     USED,
-    VOXELS,
     WAY,
     WEIGHT,
     Voxels,
@@ -100,24 +99,20 @@ def _sides_before(at: int, step: int) -> int:
     return 7 - (at & 7) if step > 0 else at & 7
 
 
-@kernel(
-    "void(Voxels, float64[::1], float64[:, ::1], float64[:, ::1], float64[::1], float64, float64, int64, float64,"
-    " float64, float64[::1], float64[::1], float64)",
-    Voxels=VOXELS,
-)
+@kernel
 def carve(
     voxels: Voxels,
-    origin: Array,
-    returns: Array,
-    free: Array,
-    sigmas: Array,
+    origin: Array1,
+    returns: Array2,
+    free: Array2,
+    sigmas: Array1,
     scan: float,
     size: float,
     free_passes: int,
     sigmas_beyond: float,
     incidence: float,
-    prior: Array,
-    evidence: Array,
+    prior: Array1,
+    evidence: Array1,
     memory: float,
 ) -> None:
     """Count the rays of a scan through the voxels they pass, and free elements that enough scans have passed.
@@ -227,8 +222,8 @@ def carve(
                 z_next += z_apart
 
 
-@kernel("void(Voxels, int64[::1], int64)", Voxels=VOXELS)
-def release(voxels: Voxels, indices: Indices, free_passes: int) -> None:
+@kernel
+def release(voxels: Voxels, indices: Indices1, free_passes: int) -> None:
     """Remove elements with ``indices`` (n,) whose points belong to what has moved; no ray has passed there yet."""
     for index in indices:
         free_element(voxels, index, free_passes, 0)
@@ -245,8 +240,8 @@ def _direction_cell(x: float, y: float, z: float, length: float) -> tuple[int, i
     return min(max(azimuth, 0), _AZIMUTHS - 1), min(max(elevation, 0), _ELEVATIONS - 1)
 
 
-@kernel("float64[:, ::1](Voxels, float64[::1], float64[:, ::1], int64, int64)", Voxels=VOXELS)
-def followed_rays(voxels: Voxels, origin: Array, free: Array, first: int, stride: int) -> Array:
+@kernel
+def followed_rays(voxels: Voxels, origin: Array1, free: Array2, first: int, stride: int) -> Array2:
     """Return those rays without return (k, 3) that may pass an element, and of the others every ``stride``-th.
 
     What stands is freed by the evidence of all rays; where nothing stands, space is seen free by few.

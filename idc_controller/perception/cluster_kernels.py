@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.arrays import Array1, Array2, Indices, Indices1, Mask1
 from idc_controller.compiled import inlined, kernel
 
 #: Angle to a neighbouring ray (mean angles between rays): beyond the nearest ones, before those behind them.
@@ -16,10 +16,10 @@ def _length(x: float, y: float, z: float) -> float:
     return math.sqrt(x * x + y * y + z * z)
 
 
-@kernel("boolean[::1](float64[::1], float64[:, ::1], int64[::1], float64[:, ::1], int64, float64, float64)")
+@kernel
 def bounded_clusters(
-    origin: Array, returns: Array, labels: Indices, free_rays: Array, count: int, spacing: float, gap: float
-) -> Mask:
+    origin: Array1, returns: Array2, labels: Indices1, free_rays: Array2, count: int, spacing: float, gap: float
+) -> Mask1:
     """Return of which clusters (count,) both sides are in sight: the rays beside them end well behind, or nowhere.
 
     Only to the left and right: what is higher than the field of view has sides as well.
@@ -76,8 +76,8 @@ def _root(parents: Indices, i: int) -> int:
     return i
 
 
-@kernel("int64[::1](float64[:, ::1], float64[::1])")
-def connected(points: Array, gaps: Array) -> Indices:
+@kernel
+def connected(points: Array2, gaps: Array1) -> Indices1:
     """Return the number of the cluster of each point (n,), counted from 0 in the order of their first points.
 
     Two points are connected if they are as near as both of their ``gaps`` (n,) (m) allow (single linkage).

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Array1, Array2, Array3, Array4
 from idc_controller.compiled import inlined, kernel
 
 _LOG_2PI = math.log(2.0 * math.pi)
@@ -45,11 +45,10 @@ def _mixed(weight: Array, x: Array, P: Array, change: float) -> tuple[Array, Arr
     return total, new_x, new_P
 
 
-@kernel(
-    "Tuple((float64[::1], float64[:, :, ::1], float64[:, :, :, ::1]))"
-    "(float64[::1], float64[:, :, ::1], float64[:, :, :, ::1], float64[:, :, ::1], float64[:, :, ::1], float64)"
-)
-def advanced(weight: Array, x: Array, P: Array, F: Array, Q: Array, change: float) -> tuple[Array, Array, Array]:
+@kernel
+def advanced(
+    weight: Array1, x: Array3, P: Array4, F: Array3, Q: Array3, change: float
+) -> tuple[Array1, Array3, Array4]:
     """Mix and predict all models over one step.
 
     Args:
@@ -82,11 +81,10 @@ def advanced(weight: Array, x: Array, P: Array, F: Array, Q: Array, change: floa
     return weight, x, P
 
 
-@kernel(
-    "Tuple((float64[::1], float64[:, :, ::1], float64[:, :, :, ::1], float64))"
-    "(float64[::1], float64[:, :, ::1], float64[:, :, :, ::1], float64[::1], float64[::1])"
-)
-def updated(weight: Array, x: Array, P: Array, position: Array, variance: Array) -> tuple[Array, Array, Array, float]:
+@kernel
+def updated(
+    weight: Array1, x: Array3, P: Array4, position: Array1, variance: Array1
+) -> tuple[Array1, Array3, Array4, float]:
     """Correct all models by a ``position`` (3,) (m; nan: not measured) of that ``variance`` (3,) (m2).
 
     ``weight`` (M,), states ``x`` (M, axis, 3) and covariances ``P`` (M, axis, 3, 3).
@@ -126,11 +124,8 @@ def updated(weight: Array, x: Array, P: Array, position: Array, variance: Array)
     return weight / weight.sum(), x, P, squared / max(measured, 1)
 
 
-@kernel(
-    "Tuple((float64[:, ::1], float64[:, :, ::1]))"
-    "(float64[::1], float64[:, :, ::1], float64[:, :, :, ::1], float64[:, :, :, ::1], float64[:, :, :, ::1])"
-)
-def predicted(weight: Array, x: Array, P: Array, F: Array, Q: Array) -> tuple[Array, Array]:
+@kernel
+def predicted(weight: Array1, x: Array3, P: Array4, F: Array4, Q: Array4) -> tuple[Array2, Array3]:
     """Return mean (K, 3) (m) and covariance (K, 3, 3) (m2) of the mixture's position at K moments.
 
     ``weight`` (M,), states ``x`` (M, axis, 3) and covariances ``P`` (M, axis, 3, 3) now; transitions ``F`` and noise

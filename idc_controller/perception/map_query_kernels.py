@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.arrays import Array, Array1, Array2, Indices1, Indices2, Mask1
 from idc_controller.compiled import inlined, kernel
 from idc_controller.perception.normal_kernels import surface_normal
 from idc_controller.perception.voxel_kernels import (
@@ -15,7 +15,6 @@ from idc_controller.perception.voxel_kernels import (
     PASSED,
     PROVEN,
     SCATTER,
-    VOXELS,
     WEIGHT,
     Voxels,
     cell_index,
@@ -26,8 +25,8 @@ from idc_controller.perception.voxel_kernels import (
 )
 
 
-@kernel("boolean[::1](Voxels, float64[:, ::1], float64, float64)", Voxels=VOXELS)
-def stands_at(voxels: Voxels, points: Array, size: float, since: float) -> Mask:
+@kernel
+def stands_at(voxels: Voxels, points: Array2, size: float, since: float) -> Mask1:
     """Return whether the voxels with ``points`` (n, 3) hold standing points, and have ``since`` that time (s) (n,)."""
     elements, found = voxels.elements, np.zeros(points.shape[0], np.bool_)
     for p in range(points.shape[0]):
@@ -37,8 +36,8 @@ def stands_at(voxels: Voxels, points: Array, size: float, since: float) -> Mask:
     return found
 
 
-@kernel("float64[:, ::1](Voxels, float64[:, ::1], float64)", Voxels=VOXELS)
-def normals_at(voxels: Voxels, points: Array, size: float) -> Array:
+@kernel
+def normals_at(voxels: Voxels, points: Array2, size: float) -> Array2:
     """Return the unit normals of what stands at ``points`` (n, 3) -> (n, 3); zero where nothing does."""
     elements, found = voxels.elements, np.zeros((points.shape[0], 3))
     for p in range(points.shape[0]):
@@ -84,16 +83,16 @@ def _is_free_about(voxels: Voxels, point: Array, radius: float, size: float, fre
     return True
 
 
-@kernel("boolean[::1](Voxels, float64[::1], float64[:, ::1], float64[::1], float64, int64, float64)", Voxels=VOXELS)
+@kernel
 def unexplained_returns(
     voxels: Voxels,
-    origin: Array,
-    returns: Array,
-    sigmas: Array,
+    origin: Array1,
+    returns: Array2,
+    sigmas: Array1,
     size: float,
     free_passes: int,
     chi_squared: float,
-) -> Mask:
+) -> Mask1:
     """Return which returns (n,) lie in what was seen free and farther from standing points than noise explains.
 
     Args:
@@ -144,8 +143,8 @@ def unexplained_returns(
     return found
 
 
-@kernel("int64[::1](Voxels, int64[::1], int64[:, ::1], int64)", Voxels=VOXELS)
-def nearest_owners(voxels: Voxels, indices: Indices, owners: Indices, reach: int) -> Indices:
+@kernel
+def nearest_owners(voxels: Voxels, indices: Indices1, owners: Indices2, reach: int) -> Indices1:
     """Return for elements ``indices`` (n,) the owner of the nearest that has one within ``reach`` voxels, or -1.
 
     ``owners``: owner and serial number of each element (E, 2); of another serial number: none.

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.arrays import Array, Array1, Array2, Indices1, Mask1
 from idc_controller.compiled import inlined, kernel
 
 _SECTORS = 128
@@ -20,8 +20,8 @@ def _sector(north: float, east: float) -> int:
     return int((turn % 1.0) * _SECTORS) % _SECTORS
 
 
-@kernel("Tuple((float64[:, ::1], boolean[::1], int64[::1]))(float64[::1], float64[:, ::1], float64[:, ::1])")
-def by_sector(origin: Array, returns: Array, free: Array) -> tuple[Array, Mask, Indices]:
+@kernel
+def by_sector(origin: Array1, returns: Array2, free: Array2) -> tuple[Array2, Mask1, Indices1]:
     """Return the rays of a scan in the order of their bearings, as :func:`count_rays` takes them.
 
     Args:
@@ -84,22 +84,19 @@ def _meeting(
     return False, passes
 
 
-@kernel(
-    "void(float64[::1], float64[:, ::1], boolean[::1], int64[::1], float64[::1], float64[:, ::1], float64[::1],"
-    " float64[:, ::1], float64, float64, float64[::1])"
-)
+@kernel
 def count_rays(
-    origin: Array,
-    ends: Array,
-    returned: Mask,
-    first: Indices,
-    sigmas: Array,
-    places: Array,
-    variances: Array,
-    normals: Array,
+    origin: Array1,
+    ends: Array2,
+    returned: Mask1,
+    first: Indices1,
+    sigmas: Array1,
+    places: Array2,
+    variances: Array1,
+    normals: Array2,
     beside: float,
     deviations: float,
-    counts: Array,
+    counts: Array1,
 ) -> None:
     """Count the rays of a scan that end where points of a body were, and those that pass through there.
 

@@ -2,7 +2,7 @@
 
 import math
 
-from idc_controller.arrays import Array, Indices, Links, Mask
+from idc_controller.arrays import Array, Array1, Array2, Indices2, Links2, Mask1
 from idc_controller.compiled import inlined, kernel
 from idc_controller.perception.element_kernels import free_element, halve_memory, new_element
 from idc_controller.perception.voxel_kernels import (
@@ -21,7 +21,6 @@ from idc_controller.perception.voxel_kernels import (
     PROVEN,
     SCATTER,
     SURFACE,
-    VOXELS,
     WAY,
     WEIGHT,
     Voxels,
@@ -41,8 +40,8 @@ _RARER, _NOISIER = 8.0, 1.3
 """Points may be noise of others that were hit by so many times as many scans, at so much smaller variance."""
 
 
-@kernel("UniTuple(int64, 2)(float64[::1], float64[:, ::1], float64[:, ::1], float64)")
-def capacity_for(origin: Array, returns: Array, free: Array, size: float) -> tuple[int, int]:
+@kernel
+def capacity_for(origin: Array1, returns: Array2, free: Array2, size: float) -> tuple[int, int]:
     """Return upper bounds of the blocks and pages that a scan can add, of blocks with edge ``size`` (m).
 
     ``origin`` (3,), ``returns`` (n, 3) and ends of ``free`` rays (m, 3): see :func:`carve`.
@@ -62,8 +61,8 @@ def capacity_for(origin: Array, returns: Array, free: Array, size: float) -> tup
     return math.ceil(min(by_rays, by_box)), math.ceil(min(by_rays, by_pages))
 
 
-@kernel("void(int64[:, ::1], int32[:, ::1], int64[:, ::1], int64)")
-def enter_pages(table: Indices, pages: Links, blocks: Indices, count: int) -> None:
+@kernel
+def enter_pages(table: Indices2, pages: Links2, blocks: Indices2, count: int) -> None:
     """Enter the first ``count`` pages into an empty ``table``."""
     for page in range(count):
         for block in pages[page]:
@@ -118,17 +117,13 @@ def _absorb_noise(voxels: Voxels, element: Array, free_passes: int, chi_squared:
                     free_element(voxels, index, free_passes, 0)
 
 
-@kernel(
-    "void(Voxels, float64[::1], float64[:, ::1], boolean[::1], float64[::1], float64, float64, float64, int64,"
-    " float64, float64, float64, float64)",
-    Voxels=VOXELS,
-)
+@kernel
 def add_returns(
     voxels: Voxels,
-    origin: Array,
-    returns: Array,
-    taken: Mask,
-    sigmas: Array,
+    origin: Array1,
+    returns: Array2,
+    taken: Mask1,
+    sigmas: Array1,
     time: float,
     scan: float,
     size: float,

@@ -4,15 +4,15 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.arrays import Array1, Array2, Indices1, Mask1
 from idc_controller.compiled import kernel
 
 _ON_RAY = 2e-4
 """Angle (rad) within which a return lies on a ray; far more than the rounding of the wire's 32-bit floats."""
 
 
-@kernel("Tuple((int64[::1], float64[::1]))(float64[:, ::1], float64[:, ::1])")
-def rays_of_returns(points: Array, directions: Array) -> tuple[Indices, Array]:
+@kernel
+def rays_of_returns(points: Array2, directions: Array2) -> tuple[Indices1, Array1]:
     """Return the ray next to each return (n,), and the angle between them (n,) (rad).
 
     Args:
@@ -47,8 +47,8 @@ def rays_of_returns(points: Array, directions: Array) -> tuple[Indices, Array]:
     return rays, angles
 
 
-@kernel("boolean[::1](float64[:, ::1], int64[::1], int64)")
-def repeated_returns(points: Array, rays: Indices, count: int) -> Mask:
+@kernel
+def repeated_returns(points: Array2, rays: Indices1, count: int) -> Mask1:
     """Return which returns (n, 3) repeat the one before on their ray (n,), of ``count`` rays, to the digit."""
     n = points.shape[0]
     last, repeated = np.full(count, -1, np.int64), np.zeros(n, np.bool_)
@@ -60,11 +60,10 @@ def repeated_returns(points: Array, rays: Indices, count: int) -> Mask:
     return repeated
 
 
-@kernel(
-    "Tuple((float64[:, ::1], int64[::1], float64[::1]))"
-    "(float64[:, ::1], float64[:, ::1], float64[::1], float64[:, ::1])"
-)
-def placed_returns(points: Array, directions: Array, place: Array, rotation: Array) -> tuple[Array, Indices, Array]:
+@kernel
+def placed_returns(
+    points: Array2, directions: Array2, place: Array1, rotation: Array2
+) -> tuple[Array2, Indices1, Array1]:
     """Return the places of returns (k, 3) (NED, m), repeated ones once, their rays (k,), and how far they are off them.
 
     That is the mean square of their distances from the rays (m2), and the largest angle from one (rad) (2,).
@@ -93,8 +92,10 @@ def placed_returns(points: Array, directions: Array, place: Array, rotation: Arr
     return places[:count].copy(), rays[:count].copy(), off
 
 
-@kernel("float64[:, ::1](float64[:, ::1], int64[::1], float64[::1], float64[:, ::1], float64, float64)")
-def free_ends(directions: Array, rays: Indices, place: Array, rotation: Array, reach: float, height: float) -> Array:
+@kernel
+def free_ends(
+    directions: Array2, rays: Indices1, place: Array1, rotation: Array2, reach: float, height: float
+) -> Array2:
     """Return the ends (k, 3) (NED, m) of the rays without a return.
 
     Args:

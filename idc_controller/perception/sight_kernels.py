@@ -2,9 +2,9 @@
 
 import math
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Array1, Array2
 from idc_controller.compiled import inlined, kernel
-from idc_controller.perception.voxel_kernels import HELD, PASSED, VOXELS, Voxels, cell_index, find_block, voxel
+from idc_controller.perception.voxel_kernels import HELD, PASSED, Voxels, cell_index, find_block, voxel
 
 
 @inlined
@@ -28,8 +28,8 @@ def _is_seen(voxels: Voxels, x: int, y: int, z: int, width: int, rays: int) -> b
     return passes > (rays - 1) * (3 * width - 2)
 
 
-@kernel("int64(Voxels, float64[:, ::1], float64[::1], float64, int64, int64, float64[:, ::1])", Voxels=VOXELS)
-def unseen_cells(voxels: Voxels, path: Array, body: Array, size: float, width: int, rays: int, found: Array) -> int:
+@kernel
+def unseen_cells(voxels: Voxels, path: Array2, body: Array1, size: float, width: int, rays: int, found: Array2) -> int:
     """Return how many cells of a body's way from the first place of its path on were not seen free.
 
     Cells are cubes of voxels, on the way if their middle is; those that the body holds at the first place are not. None
@@ -98,8 +98,8 @@ def _is_clear(voxels: Voxels, start: Array, north: float, east: float, down: flo
     return True
 
 
-@kernel("int64(Voxels, float64[:, ::1], float64[:, ::1], float64[::1], float64)", Voxels=VOXELS)
-def first_hidden(voxels: Voxels, path: Array, sensors: Array, heights: Array, size: float) -> int:
+@kernel
+def first_hidden(voxels: Voxels, path: Array2, sensors: Array2, heights: Array1, size: float) -> int:
     """Return the index of the first place of a ``path`` (P, 3) that what was hit hides from all ``sensors`` (N, 3).
 
     A place is hidden if all of its points at ``heights`` (H,) (m) above it are; P: none is. NED (m).

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Indices
+from idc_controller.arrays import Array, Array1, Array2, Indices1
 from idc_controller.compiled import inlined, kernel
 from idc_controller.perception.voxel_kernels import (
     EDGE,
@@ -18,7 +18,6 @@ from idc_controller.perception.voxel_kernels import (
     LOW,
     MEAN,
     POINTS,
-    VOXELS,
     WEIGHT,
     Voxels,
     cell_index,
@@ -30,8 +29,8 @@ from idc_controller.perception.voxel_kernels import (
 )
 
 
-@kernel("void(Voxels, int64[::1], float64[::1], float64, float64[:, ::1])", Voxels=VOXELS)
-def cover_points(voxels: Voxels, indices: Indices, sigmas: Array, tolerance: float, bounds: Array) -> None:
+@kernel
+def cover_points(voxels: Voxels, indices: Indices1, sigmas: Array1, tolerance: float, bounds: Array2) -> None:
     """Write the bounds within which the true surface in the voxels of some elements lies into ``bounds`` (E, 6).
 
     Bounds of the measured points, moved outwards by as many standard deviations as the number of scans that hit the
@@ -98,8 +97,8 @@ def _gaps_of_block(
     return count
 
 
-@kernel("float64[:, ::1](Voxels, int64[::1], float64[::1], float64, int64, int64)", Voxels=VOXELS)
-def gaps_within(voxels: Voxels, among: Indices, box: Array, size: float, free_passes: int, most: int) -> Array:
+@kernel
+def gaps_within(voxels: Voxels, among: Indices1, box: Array1, size: float, free_passes: int, most: int) -> Array2:
     """Return the middles (n, 3) of the gaps in a box: voxels seen free, with no point in the 27 voxels about them.
 
     Args:

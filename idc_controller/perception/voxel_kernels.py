@@ -3,42 +3,32 @@
 import math
 from typing import NamedTuple
 
-from numba.core import types
-
-from idc_controller.arrays import Array, Cells, Indices, Links
+from idc_controller.arrays import Array, Array2, Cells2, Indices, Indices1, Indices2, Links2
 from idc_controller.compiled import inlined
 
 
 class Voxels(NamedTuple):
     """What a standing map knows of space."""
 
-    table: Indices
+    table: Indices2
     """Hash table of the pages by open addressing, key and number (2^k, 2); key -1: empty."""
-    pages: Links
+    pages: Links2
     """Number of each block of a page (P, 4096), -1: none. A ray stays in few pages, which the cache holds."""
-    blocks: Indices
+    blocks: Indices2
     """Key of a block; whether it has changed (bits :data:`SURFACE` and :data:`FREE`); its voxels that were seen free;
     its voxels with points (B, 4)."""
-    cells: Cells
+    cells: Cells2
     """One byte a voxel (B, 512): how many rays have passed, up to as many as make it seen free, and :data:`HELD`, if it
     holds points. Small, as every ray reads some forty of them."""
-    links: Links
+    links: Links2
     """In bits 0 to 7 how many of the 27 voxels about a voxel hold points, above that the index of its surface element
     plus one (0: it holds no point) (B, 512)."""
-    elements: Array
+    elements: Array2
     """What is known of the points in a voxel (E, COLUMNS)."""
-    counts: Indices
+    counts: Indices1
     """Blocks, elements ever used, first spare element plus one, serial number of the last element, pages (5,)."""
 
 
-VOXELS = types.NamedTuple(
-    [types.Array(of, axes, "C") for of, axes in (
-        (types.int64, 2), (types.int32, 2), (types.int64, 2), (types.uint8, 2), (types.int32, 2), (types.float64, 2),
-        (types.int64, 1),
-    )],
-    Voxels,
-)  # fmt: skip
-"""Type of :class:`Voxels` in the signature of a kernel."""
 EDGE = 8
 """Voxels along the edge of a block."""
 CELLS = EDGE**3

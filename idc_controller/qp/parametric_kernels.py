@@ -2,14 +2,12 @@
 
 import numpy as np
 
-from idc_controller.arrays import Array, Indices
+from idc_controller.arrays import Array1, Array2, Indices1
 from idc_controller.compiled import kernel
 
 
-@kernel(
-    "Tuple((boolean, float64[::1]))(float64[::1], float64[:, ::1], int64[::1], float64[::1], float64[::1])",
-)
-def optimum_and_rows(p: Array, products: Array, which: Indices, sign: Array, h: Array) -> tuple[bool, Array]:
+@kernel
+def optimum_and_rows(p: Array1, products: Array2, which: Indices1, sign: Array1, h: Array1) -> tuple[bool, Array1]:
     """Return whether the unconstrained optimum keeps all m rows, and the optimum (n,).
 
     Args:

@@ -3,25 +3,21 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array1, Array2, Array3, Indices1, Mask1
 from idc_controller.compiled import kernel
 
 
-@kernel(
-    "Tuple((int64[::1], float64[:, ::1], float64[:, :, ::1], float64[:, :, ::1]))"
-    "(float64[:, :, ::1], float64[:, ::1], float64[:, :, ::1], float64[:, ::1], float64[::1], boolean[::1], float64)"
-)
+@kernel
 def within_reach(
-    points: Array,
-    position: Array,
-    centres: Array,
-    growth: Array,
-    reach: Array,
-    upright: NDArray[np.bool_],
+    points: Array3,
+    position: Array2,
+    centres: Array3,
+    growth: Array2,
+    reach: Array1,
+    upright: Mask1,
     limit: float,
-) -> tuple[NDArray[np.int64], Array, Array, Array]:
+) -> tuple[Indices1, Array2, Array3, Array3]:
     """Return the obstacles that may come nearer to the hull than ``limit`` (m) at some stage.
 
     Hull and obstacles are bounded by balls, upright obstacles and the hull beside them by upright cylinders.
@@ -78,26 +74,22 @@ def within_reach(
     return found[:count].copy(), away[:count].copy(), offsets, normals
 
 
-@kernel(
-    "Tuple((float64[:, ::1], float64[:, ::1], float64[::1]))(float64[:, :, ::1], float64[:, :, ::1], float64[:, ::1],"
-    " float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1], float64, float64, float64,"
-    " float64, float64[:, ::1])"
-)
+@kernel
 def barrier_planes(
-    normals: Array,
-    centres: Array,
-    growth: Array,
-    bodies: Array,
-    supports: Array,
-    vertices: Array,
-    hover_offsets: Array,
-    lengths: Array,
+    normals: Array3,
+    centres: Array3,
+    growth: Array2,
+    bodies: Array2,
+    supports: Array2,
+    vertices: Array2,
+    hover_offsets: Array2,
+    lengths: Array1,
     disc_radius: float,
     g: float,
     margin: float,
     uav_margin: float,
-    acceleration: Array,
-) -> tuple[Array, Array, Array]:
+    acceleration: Array2,
+) -> tuple[Array2, Array2, Array1]:
     """Return the constants of h of payload and discs (S, K + 1) (m) and the lever of the discs (K + 1,) (s2).
 
     Args:
@@ -144,13 +136,10 @@ def barrier_planes(
     return payload, discs, lever
 
 
-@kernel(
-    "float64[:, :, ::1](float64[:, :, ::1], float64[:, ::1], float64[:, ::1], float64[::1], float64[:, ::1], "
-    "float64[:, ::1])"
-)
+@kernel
 def barrier_values(
-    normals: Array, payload: Array, discs: Array, lever: Array, position: Array, acceleration: Array
-) -> Array:
+    normals: Array3, payload: Array2, discs: Array2, lever: Array1, position: Array2, acceleration: Array2
+) -> Array3:
     """Return h of payload and discs along the planes of each of S separations (S, 2, K + 1) (m).
 
     Args:
@@ -171,8 +160,8 @@ def barrier_values(
     return values
 
 
-@kernel("float64[:, ::1](float64[:, :, ::1], float64[::1], float64[:, :, ::1], float64[:, ::1], int64)")
-def barrier_rows(normals: Array, lever: Array, response: Array, operator: Array, degree: int) -> Array:
+@kernel
+def barrier_rows(normals: Array3, lever: Array1, response: Array3, operator: Array2, degree: int) -> Array2:
     """Return G (2 K S, 3 knots) of the barrier of S separations: payload, then discs of each, at the stages 1 .. K.
 
     Args:

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from idc_controller.arrays import Array, Indices
-from idc_controller.compiled import MATRIX, VECTOR, inlined, kernel
+from idc_controller.arrays import Array, Array2, Array3, Const1, Const2, Indices, Indices2
+from idc_controller.compiled import inlined, kernel
 from idc_controller.model.drag import SMOOTHING
 
 
@@ -176,33 +176,27 @@ def _states(
     return x, u
 
 
-@kernel(
-    "Tuple((float64[:, ::1], float64[:, ::1], float64[:, :, ::1], float64[:, :, ::1], float64[:, ::1], "
-    "float64[:, :, ::1], float64[:, ::1], float64[:, :, ::1]))"
-    f"(float64[:, :, ::1], int64[:, ::1], float64, float64, {VECTOR}, float64[:, ::1], "
-    f"boolean, {VECTOR}, {VECTOR}, float64, float64, "
-    f"float64, {MATRIX}, {VECTOR}, {VECTOR}, float64, float64, float64)"
-)
+@kernel
 def flat_map(
-    derivatives: Array,
-    index: Indices,
+    derivatives: Array3,
+    index: Indices2,
     h: float,
     mass: float,
-    force: Array,
-    uav_force: Array,
+    force: Const1,
+    uav_force: Array2,
     has_air: bool,
-    wind: Array,
-    payload_drag: Array,
+    wind: Const1,
+    payload_drag: Const1,
     uav_drag: float,
     drag_limit: float,
     g: float,
-    p: Array,
-    l: Array,
-    m: Array,
+    p: Const2,
+    l: Const1,
+    m: Const1,
     kp: float,
     kd: float,
     T_m: float,
-) -> tuple[Array, Array, Array, Array, Array, Array, Array, Array]:
+) -> tuple[Array2, Array2, Array3, Array3, Array2, Array3, Array2, Array3]:
     """Return the reference at K times, in the coordinates of the linear model, and the forces there; NED, SI.
 
     Args:

@@ -3,9 +3,8 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Array1, Array2, Array3, Indices1
 from idc_controller.compiled import inlined, kernel
 
 _SUPPORT = 6
@@ -22,8 +21,8 @@ def _span(times: Array) -> tuple[float, float]:
     return earliest, latest
 
 
-@kernel("float64[:, :, ::1](float64[:, ::1], float64[:, :, ::1], float64[::1], int64)")
-def spline(control_points: Array, basis: Array, arguments: Array, order: int) -> Array:
+@kernel
+def spline(control_points: Array2, basis: Array3, arguments: Array1, order: int) -> Array3:
     """Return position and derivatives (order + 1, K, 3) of a uniform B-spline of degree 5.
 
     Args:
@@ -89,8 +88,8 @@ def _phase(coefficients: Array, knots: Array, times: Array, order: int) -> Array
     return result
 
 
-@kernel("float64[:, :, ::1](float64[::1], float64[:, ::1])")
-def figure_eight(curve: Array, phases: Array) -> Array:
+@kernel
+def figure_eight(curve: Array1, phases: Array2) -> Array3:
     """Return position and derivatives by time (order + 1, K, 3) on the figure eight, by the chain rule (Faa di Bruno).
 
     Args:
@@ -127,8 +126,8 @@ def figure_eight(curve: Array, phases: Array) -> Array:
     return result
 
 
-@kernel("float64[:, :, ::1](float64[::1], float64[:, ::1], float64[::1], float64[::1], int64)")
-def figure_eight_at(curve: Array, coefficients: Array, knots: Array, times: Array, order: int) -> Array:
+@kernel
+def figure_eight_at(curve: Array1, coefficients: Array2, knots: Array1, times: Array1, order: int) -> Array3:
     """Return position and derivatives (order + 1, K, 3) on the figure eight at ``times`` (K,) (s).
 
     Args:
@@ -163,8 +162,8 @@ def _add_chain(states: Array, row: int, period: float, stages: int, elapsed: flo
             result[d, axis] += value
 
 
-@kernel("float64[:, :, ::1](float64[:, :, ::1], float64, float64[::1])")
-def chain(states: Array, period: float, elapsed: Array) -> Array:
+@kernel
+def chain(states: Array3, period: float, elapsed: Array1) -> Array3:
     """Return position to snap (5, M, 3) between the stages of a plan, whose snap is linear from one to the next.
 
     Beyond the last stage it goes on with the last acceleration fading at once: callers look that far for shape only.
@@ -180,8 +179,8 @@ def chain(states: Array, period: float, elapsed: Array) -> Array:
     return result
 
 
-@kernel("Tuple((int64[::1], float64[::1], float64, float64))(float64[:, ::1], float64[::1])")
-def progress(scalings: Array, times: Array) -> tuple[NDArray[np.int64], Array, float, float]:
+@kernel
+def progress(scalings: Array2, times: Array1) -> tuple[Indices1, Array1, float, float]:
     """Return the piece in force (M,), the progress of its reference (M,) (s), and the span of that.
 
     The span is NaN twice if a progress is not finite.
@@ -203,17 +202,14 @@ def progress(scalings: Array, times: Array) -> tuple[NDArray[np.int64], Array, f
     return which, result, earliest, latest
 
 
-@kernel(
-    "void(float64[:, :, ::1], float64[::1], int64[::1], float64[:, ::1], int64[::1], float64[:, :, ::1], float64, "
-    "int64)"
-)
+@kernel
 def deflect(
-    derivatives: Array,
-    times: Array,
-    which: NDArray[np.int64],
-    scalings: Array,
-    rows: NDArray[np.int64],
-    states: Array,
+    derivatives: Array3,
+    times: Array1,
+    which: Indices1,
+    scalings: Array2,
+    rows: Indices1,
+    states: Array3,
     period: float,
     stages: int,
 ) -> None:

@@ -20,8 +20,8 @@ from lengths.constants import OFFSET
 _longer = inlined(functions.longer)
 
 
-@kernel("float64(float64)")
-def length(x):
+@kernel
+def length(x: float) -> float:
     return _longer(x) + OFFSET + constants.WIDTHS[1]
 """,
 }

@@ -7,7 +7,7 @@ One row a vehicle, of arrays whose columns are named below. ``estimates`` and ``
 import math
 
 from idc_controller import rotations_float
-from idc_controller.arrays import Array, Mask
+from idc_controller.arrays import Array, Array1, Array2, Mask1
 from idc_controller.compiled import inlined, kernel
 from idc_controller.rotations_float import Quaternion, Vector
 from vehicle_sim.world.rotors import Four
@@ -100,8 +100,10 @@ def wanted_acceleration(
     return x, y, z
 
 
-@kernel("void(float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1])")
-def control_attitudes(airframes: Array, estimates: Array, targets: Array, accelerations: Array, speeds: Array) -> None:
+@kernel
+def control_attitudes(
+    airframes: Array2, estimates: Array2, targets: Array2, accelerations: Array2, speeds: Array2
+) -> None:
     """Write rotor-speed commands ``speeds`` (N, 4) (rad/s) that turn vehicles to their ``targets``; 0 without thrust.
 
     ``accelerations`` (N, 3): the angular accelerations for which the torques are set (rad/s2).
@@ -135,9 +137,9 @@ def control_attitudes(airframes: Array, estimates: Array, targets: Array, accele
             speeds[i, k] = math.sqrt(forces[k] * a[PER_K_F]) if forces[k] > 0.0 else 0.0
 
 
-@kernel("void(float64[:, ::1], float64[::1], float64, float64[:, ::1], float64[:, ::1], float64[:, ::1], boolean[::1])")
+@kernel
 def take_fresh_samples(
-    samples: Array, times: Array, now: float, last: Array, estimates: Array, stamps: Array, fresh: Mask
+    samples: Array2, times: Array1, now: float, last: Array2, estimates: Array2, stamps: Array2, fresh: Mask1
 ) -> None:
     """Write which ``samples`` (N, 13) are ``fresh``: numbers, with a rotation for attitude, and no repeated ones.
 
@@ -171,10 +173,11 @@ def take_fresh_samples(
             stamps[i, SAMPLE_TIME], stamps[i, FRESH_AT] = times[i], now
 
 
-@kernel("void(float64[:, ::1], float64[:, ::1], float64[:, ::1], boolean[::1], float64, float64[:, ::1], float64[::1])")
+@kernel
 def detect_landings(
-    detectors: Array, estimates: Array, targets: Array, learns: Mask, now: float, landings: Array, idle_until: Array
-) -> None:
+    detectors: Array2, estimates: Array2, targets: Array2, learns: Mask1, now: float,
+    landings: Array2, idle_until: Array1,
+) -> None:  # fmt: skip
     """Take one step of landing detection at ``now`` (s); see :class:`.land_detector.LandDetector`.
 
     The thrust is that of ``targets``; ``learns``: vehicles that learn their hover thrust from it. Those that lift off
@@ -216,27 +219,23 @@ def detect_landings(
             idle_until[i] = -math.inf
 
 
-@kernel(
-    "int64(float64[:, ::1], float64[::1], float64, float64[:, ::1], float64[:, ::1], float64[:, ::1], boolean[::1],"
-    " float64[:, ::1], float64[:, ::1], boolean[::1], float64[:, ::1], float64[::1],"
-    " float64[:, ::1], float64[:, ::1], float64[:, ::1])"
-)
+@kernel
 def step_while_idle(
-    samples: Array,
-    times: Array,
+    samples: Array2,
+    times: Array1,
     now: float,
-    last: Array,
-    estimates: Array,
-    stamps: Array,
-    fresh: Mask,
-    detectors: Array,
-    targets: Array,
-    learns: Mask,
-    landings: Array,
-    idle_until: Array,
-    airframes: Array,
-    accelerations: Array,
-    speeds: Array,
+    last: Array2,
+    estimates: Array2,
+    stamps: Array2,
+    fresh: Mask1,
+    detectors: Array2,
+    targets: Array2,
+    learns: Mask1,
+    landings: Array2,
+    idle_until: Array1,
+    airframes: Array2,
+    accelerations: Array2,
+    speeds: Array2,
 ) -> int:
     """Take a step as far as no vehicle has to decide, and return how far that is: a stage above.
 

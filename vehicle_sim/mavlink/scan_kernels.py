@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Indices
+from idc_controller.arrays import Array2, Indices1
 from idc_controller.compiled import kernel
 
 
-@kernel("int64[::1](float64[:, ::1], int64, int64)")
-def nearest_by_sector(points: Array, sectors: int, none: int) -> Indices:
+@kernel
+def nearest_by_sector(points: Array2, sectors: int, none: int) -> Indices1:
     """Return the distance (sectors,) (cm, rounded down) of the nearest return in each sector, ``none`` without.
 
     Args:

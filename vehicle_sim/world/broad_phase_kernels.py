@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from idc_controller import rotations_float
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Array1, Array2
 from idc_controller.compiled import inlined, kernel
 from idc_controller.rotations_float import Vector
 
@@ -55,8 +55,8 @@ def _speed(v: Array) -> float:
     return math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
 
 
-@kernel("float64(float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1])")
-def time_apart(states: Array, attachments: Array, centres: Array, bounds: Array, sizes: Array) -> float:
+@kernel
+def time_apart(states: Array2, attachments: Array2, centres: Array2, bounds: Array2, sizes: Array1) -> float:
     """Return for how long (s) no two parts can touch, nor a part the ground, the pad or an obstacle.
 
     A lower bound, zero where none can be given: a UAV and its link are a segment with the UAV's ball all along it.

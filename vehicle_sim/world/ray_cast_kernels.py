@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Indices
+from idc_controller.arrays import Array, Array1, Array2, Indices1
 from idc_controller.compiled import inlined, kernel
 
 _SECTORS = 64
@@ -105,14 +105,11 @@ def _hull_hit(planes: Array, begin: int, end: int, x: float, y: float, z: float,
     return enter
 
 
-@kernel(
-    "float64[::1](float64[:, ::1], float64[::1], float64, float64[:, ::1], float64[:, ::1], float64[:, ::1],"
-    " float64[:, ::1], int64[::1])"
-)
+@kernel
 def first_hits(
-    directions: Array, pose: Array, reach: float, centres: Array, bodies: Array, bounds: Array, planes: Array,
-    starts: Indices,
-) -> Array:  # fmt: skip
+    directions: Array2, pose: Array1, reach: float, centres: Array2, bodies: Array2, bounds: Array2, planes: Array2,
+    starts: Indices1,
+) -> Array1:  # fmt: skip
     """Return the distance (n,) (m) to the first body or the ground on each ray, 0 inside of one, inf beyond ``reach``.
 
     Args:
@@ -191,10 +188,10 @@ def first_hits(
     return distance
 
 
-@kernel("float64[:, ::1](float64[:, ::1], float64[::1], float64[::1], float64[::1], float64[::1], float64[::1])")
+@kernel
 def measured_returns(
-    directions: Array, distances: Array, errors: Array, chances: Array, pose: Array, limits: Array
-) -> Array:
+    directions: Array2, distances: Array1, errors: Array1, chances: Array1, pose: Array1, limits: Array1
+) -> Array2:
     """Return what a sensor reports of its rays' first hits (m, 3), in its own frame (m), in the order of the rays.
 
     Args:

@@ -1,6 +1,6 @@
 """The lag and the wrenches of all vehicles' rotors over physics steps."""
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Array2, Array3
 from idc_controller.compiled import inlined, kernel
 
 
@@ -13,8 +13,8 @@ def _advance(motor: Array, commands: Array, speeds: Array, j: int) -> float:
     return force
 
 
-@kernel("void(float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, :, ::1])")
-def advance_rotors(motors: Array, commands: Array, speeds: Array, thrusts: Array, torques: Array) -> None:
+@kernel
+def advance_rotors(motors: Array2, commands: Array2, speeds: Array2, thrusts: Array2, torques: Array3) -> None:
     """Let ``speeds`` (N, 4) follow ``commands`` (N, 4) (rad/s) over K steps, exactly for commands that stay constant.
 
     ``motors`` (N, 5): decay of a difference over the step, thrust per squared speed (N s2), lever arm of roll and

@@ -7,7 +7,7 @@ frame in rad/s; north-east-down. Row 0 is the payload's.
 import math
 
 from idc_controller import rotations_float
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Array1, Array2
 from idc_controller.compiled import inlined, kernel
 from idc_controller.rotations_float import Quaternion, Vector
 from vehicle_sim.world import world_state
@@ -83,13 +83,10 @@ def _lead(memory: Array, k: int, rates: Vector, before: Vector, change_before: V
     return plus((0.875 * change[0], 0.875 * change[1], 0.875 * change[2]), -0.375, change_before)
 
 
-@kernel(
-    "void(float64[:, ::1], float64[:, ::1], float64[::1], float64, int64, "
-    "float64[:, ::1], float64[:, ::1], float64[:, ::1])"
-)
+@kernel
 def states_from_engine(
-    readings: Array, parts: Array, payload_in_axes: Array, step: float, steps: int,
-    memory: Array, states: Array, loads: Array,
+    readings: Array2, parts: Array2, payload_in_axes: Array1, step: float, steps: int,
+    memory: Array2, states: Array2, loads: Array2,
 ) -> None:  # fmt: skip
     """Write the true ``states`` (M, 13) of payload and UAVs, and the ``loads`` (M, 6) that the engine lacks.
 
@@ -161,8 +158,8 @@ def states_from_engine(
             loads[i, 3 + k] = part[k] * angular[k] + torque[k]
 
 
-@kernel("void(float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1])")
-def measure(states: Array, sigmas: Array, normals: Array, samples: Array) -> None:
+@kernel
+def measure(states: Array2, sigmas: Array2, normals: Array2, samples: Array2) -> None:
     """Write the ``samples`` (M, 13) of ``states`` (M, 13): the same columns with white noise, unit quaternions.
 
     ``sigmas`` (M, 4) of position (m), attitude (rad), velocity (m/s) and rates (rad/s); ``normals`` (M, 12): standard

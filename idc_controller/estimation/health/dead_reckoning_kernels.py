@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from idc_controller.arrays import Array, Indices, Mask
-from idc_controller.compiled import VECTOR, inlined, kernel
+from idc_controller.arrays import Array, Array1, Array2, Array3, Const1, Indices1, Indices2, Mask1
+from idc_controller.compiled import inlined, kernel
 
 _MEDIAN_EFFICIENCY = 1.2533  # standard deviation of a median of n, times sqrt(n), over that of one sample
 _FROM_STEPS = 1.4826 / 2.0**0.5  # standard deviation of a sample over the median step from one to the next
@@ -34,8 +34,10 @@ def _turn(attitude: Array, duration: float, rates: Array) -> None:
     attitude /= np.sqrt((attitude * attitude).sum())
 
 
-@kernel(f"void(float64[:, ::1], float64[::1], float64[::1], float64, {VECTOR}, float64[::1])")
-def integrate(motions: Array, motion: Array, integral: Array, duration: float, pose: Array, difference: Array) -> None:
+@kernel
+def integrate(
+    motions: Array2, motion: Array1, integral: Array1, duration: float, pose: Const1, difference: Array1
+) -> None:
     """Integrate the median motion, and take the difference of a pose and the integral.
 
     Args:
@@ -67,8 +69,8 @@ def integrate(motions: Array, motion: Array, integral: Array, duration: float, p
     difference[2] = twice * (d * w - a * z - b * y + c * x)
 
 
-@kernel("float64(float64[:, ::1], int64, float64, float64)")
-def drift_ratio(window: Array, n: int, error: float, sigmas: float) -> float:
+@kernel
+def drift_ratio(window: Array2, n: int, error: float, sigmas: float) -> float:
     """Return how far differences have moved over the window, over what is allowed; the largest of the axes.
 
     One that is not a number is inf: no evidence of consistency.
@@ -93,15 +95,11 @@ def drift_ratio(window: Array, n: int, error: float, sigmas: float) -> float:
     return worst
 
 
-@kernel(
-    f"Tuple((int64, int64))({VECTOR}, int64[::1], boolean[::1], {VECTOR}, int64, float64, float64, int64, "
-    "float64, float64, float64, float64[:, :, ::1], float64[:, ::1], float64[:, ::1], float64[:, :, ::1], "
-    "int64[:, ::1], float64[::1])"
-)
+@kernel
 def reckon(
-    times: Array, sources: Indices, is_position: Mask, values: Array,
+    times: Const1, sources: Indices1, is_position: Mask1, values: Const1,
     vehicles: int, window: float, gap: float, n: int, position_error: float, attitude_error: float, sigmas: float,
-    recent: Array, motion: Array, integral: Array, differences: Array, counts: Indices, ratio: Array,
+    recent: Array3, motion: Array2, integral: Array2, differences: Array3, counts: Indices2, ratio: Array1,
 ) -> tuple[int, int]:  # fmt: skip
     """Take the poses and motions of one moment, and test the sources that have enough new ones.
 

@@ -2,18 +2,15 @@
 
 import numpy as np
 
-from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.arrays import Array1, Array2, Indices1, Mask1
 from idc_controller.compiled import kernel
 
 
-@kernel(
-    "boolean[::1](float64, int64[::1], int64[::1], float64[::1], float64[::1], float64, "
-    "float64[:, ::1], float64[:, ::1], float64[::1])"
-)
+@kernel
 def running_means(
-    time: float, which: Indices, sizes: Indices, innovations: Array, gates: Array, share: float,
-    mean: Array, square: Array, last: Array,
-) -> Mask:  # fmt: skip
+    time: float, which: Indices1, sizes: Indices1, innovations: Array1, gates: Array1, share: float,
+    mean: Array2, square: Array2, last: Array1,
+) -> Mask1:  # fmt: skip
     """Update the running means of S sensors in place; return which of K measurements are new (K,).
 
     Args:

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Array1, Array2
 from idc_controller.compiled import inlined, kernel
 
 _FARTHEST = 0.0025  # m2: from three times its root on, residuals count for less and less
@@ -90,17 +90,13 @@ def _residuals(
     return residual, variance
 
 
-@kernel(
-    "Tuple((float64[::1], float64[::1], float64, float64))"
-    "(float64[:, ::1], float64[:, ::1], float64[::1], float64[::1], float64[::1], float64, float64,"
-    " float64, float64, float64, float64, int64, int64, float64)"
-)
+@kernel
 def fitted_round(
-    points: Array,
-    origins: Array,
-    own_variance: Array,
-    mean: Array,
-    prior: Array,
+    points: Array2,
+    origins: Array2,
+    own_variance: Array1,
+    mean: Array1,
+    prior: Array1,
     noise: float,
     scatter: float,
     radius_min: float,
@@ -110,7 +106,7 @@ def fitted_round(
     iterations: int,
     free: int,
     close_enough: float,
-) -> tuple[Array, Array, float, float]:
+) -> tuple[Array1, Array1, float, float]:
     """Fit a sphere or a pole to n points.
 
     Args:
