@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Array1, Array2, Indices1
+from idc_controller.arrays import Array, Array2, Indices1
 from idc_controller.compiled import inlined, kernel
 from idc_controller.perception.element_kernels import free_element, halve_memory
 from idc_controller.perception.normal_kernels import surface_normal
@@ -28,6 +28,8 @@ from idc_controller.perception.voxel_kernels import (
     USED,
     WAY,
     WEIGHT,
+    Rays,
+    Rules,
     Voxels,
     block_in_page,
     block_key,
@@ -44,8 +46,8 @@ _ALIKE = math.cos(math.radians(20.0))
 
 @inlined
 def _is_passed(
-    voxels: Voxels, element: Array, origin: Array, way: Array, length: float, range_variance: float, sigmas: Array,
-    sigmas_beyond: float, incidence: float, normal: Array,
+    voxels: Voxels, rules: Rules, element: Array, rays: Rays, way: Array, length: float, range_variance: float,
+    normal: Array,
 ) -> int:  # fmt: skip
     """Return 1 for a ray that goes through the place of an element's points and ends beyond, else 0.
 
@@ -54,7 +56,7 @@ def _is_passed(
     """
     along, square = 0.0, 0.0
     for i in range(3):
-        offset = element[MEAN + i] - origin[i]
+        offset = element[MEAN + i] - rays.origin[i]
         along += offset * way[i]
         square += offset * offset
     if along <= 0.0:
@@ -67,16 +69,17 @@ def _is_passed(
         + 2.0 * (xy * way[0] * way[1] + xz * way[0] * way[2] + yz * way[1] * way[2])
     ) / weight  # fmt: skip
     beyond = length - along
-    if beyond <= 0.0 or beyond * beyond <= sigmas_beyond**2 * (range_variance + max(depth, element[POINTS] / weight)):
+    noise = range_variance + max(depth, element[POINTS] / weight)
+    if beyond <= 0.0 or beyond * beyond <= rules.sigmas_beyond**2 * noise:
         return 0
     # Within the spread of the points, without what is noise of it, or within the noise of the ray.
     spread = 1.5 * (max((xx + yy + zz) / weight - depth, 0.0) / 2.0 - element[POINTS] / weight)
-    across = sigmas[1] ** 2 + (sigmas[2] * along) ** 2
+    across = rays.sigmas[1] ** 2 + (rays.sigmas[2] * along) ** 2
     if square - along * along > max(spread, across):
         return 0
     surface_normal(voxels, element, normal)
     dot = normal[0] * way[0] + normal[1] * way[1] + normal[2] * way[2]
-    if abs(dot) >= incidence or normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2 == 0.0:
+    if abs(dot) >= rules.incidence or normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2 == 0.0:
         return 1
     alike = element[WAY] * way[0] + element[WAY + 1] * way[1] + element[WAY + 2] * way[2]
     return -1 if alike >= _ALIKE * element[POINTS] else 0
@@ -100,21 +103,7 @@ def _sides_before(at: int, step: int) -> int:
 
 
 @kernel
-def carve(
-    voxels: Voxels,
-    origin: Array1,
-    returns: Array2,
-    free: Array2,
-    sigmas: Array1,
-    scan: float,
-    size: float,
-    free_passes: int,
-    sigmas_beyond: float,
-    incidence: float,
-    prior: Array1,
-    evidence: Array1,
-    memory: float,
-) -> None:
+def carve(voxels: Voxels, rules: Rules, rays: Rays, scan: float) -> None:
     """Count the rays of a scan through the voxels they pass, and free elements that enough scans have passed.
 
     A ray that has met the voxel of an element is no evidence for free voxels beyond: it may go along its surface.
@@ -124,19 +113,12 @@ def carve(
 
     Args:
         voxels: of the map, of enough capacity.
-        origin: place of the sensor (3,).
-        returns: (n, 3), NED (m).
-        free: ends of the rays that returned nothing up to there (m, 3), NED (m).
-        sigmas: standard deviations of range (m), position (m) and attitude (rad).
-        scan: number of the scan.
-        size: edge of a voxel (m).
-        free_passes: rays through a voxel from which on it was seen free.
-        sigmas_beyond: standard deviations by which a ray must end beyond what it passes.
-        incidence: least cosine between a ray that passes through points, and their surface's normal.
-        prior: scans that hit and that pass what stands, before any has told otherwise (2,).
-        evidence: nats of one scan's hit, and most of them; least of one that passes through, and along a surface (4,).
-        memory: scans that an element remembers.
+        rules: of the map.
+        rays: of the scan.
+        scan: its number.
     """
+    origin, returns, free, sigmas = rays
+    size, free_passes, prior, evidence = rules.size, rules.free_passes, rules.prior, rules.evidence
     pages, blocks, cells, elements = voxels.pages, voxels.blocks, voxels.cells, voxels.elements
     way, normal = np.empty(3), np.empty(3)
     returned = returns.shape[0]
@@ -149,7 +131,7 @@ def carve(
         if not 0.0 < length < math.inf:
             continue
         range_variance = sigmas[1] ** 2 + (sigmas[0] ** 2 if r < returned else 0.0)
-        last = length - sigmas_beyond * math.sqrt(range_variance) if r < returned else length
+        last = length - rules.sigmas_beyond * math.sqrt(range_variance) if r < returned else length
         way /= length
         # Voxels in the order in which the ray leaves them (Amanatides and Woo, 1987): place along it of the next side.
         x, x_step, x_next, x_apart = _first_side(origin[0], way[0], size)
@@ -190,9 +172,7 @@ def carve(
                 element = elements[index]
                 passed = 0
                 if element[LAST_HIT] != scan and element[LAST_PASS] != scan:
-                    passed = _is_passed(
-                        voxels, element, origin, way, length, range_variance, sigmas, sigmas_beyond, incidence, normal
-                    )
+                    passed = _is_passed(voxels, rules, element, rays, way, length, range_variance, normal)
                 if passed:
                     element[LAST_PASS] = scan
                     # Along a surface, a ray that misses it is as likely as one that hits it elsewhere.
@@ -205,7 +185,7 @@ def carve(
                     if element[GONE] >= min(element[HITS] * evidence[0], most):
                         free_element(voxels, index, free_passes, free_passes)
                     else:
-                        halve_memory(element, memory)
+                        halve_memory(element, rules.memory)
             elif not met and value < free_passes:
                 cells[block, cell] = value + 1
                 if value + 1 == free_passes:
@@ -241,20 +221,19 @@ def _direction_cell(x: float, y: float, z: float, length: float) -> tuple[int, i
 
 
 @kernel
-def followed_rays(voxels: Voxels, origin: Array1, free: Array2, first: int, stride: int) -> Array2:
+def followed_rays(voxels: Voxels, rays: Rays, first: int, stride: int) -> Array2:
     """Return those rays without return (k, 3) that may pass an element, and of the others every ``stride``-th.
 
     What stands is freed by the evidence of all rays; where nothing stands, space is seen free by few.
 
     Args:
         voxels: of the map.
-        origin: place of the sensor (3,).
-        free: ends of the rays (m, 3), NED (m).
+        rays: of the scan.
         first: number of the first ray of the others.
         stride: of the others.
     """
     near = np.zeros((_AZIMUTHS, _ELEVATIONS), np.bool_)
-    elements, reach = voxels.elements, 0.0
+    origin, free, elements, reach = rays.origin, rays.free, voxels.elements, 0.0
     for r in range(free.shape[0]):
         square = 0.0
         for i in range(3):

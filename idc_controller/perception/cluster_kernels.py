@@ -6,6 +6,7 @@ import numpy as np
 
 from idc_controller.arrays import Array1, Array2, Indices, Indices1, Mask1
 from idc_controller.compiled import inlined, kernel
+from idc_controller.perception.voxel_kernels import Rays
 
 #: Angle to a neighbouring ray (mean angles between rays): beyond the nearest ones, before those behind them.
 _NEIGHBOURS = 1.8
@@ -17,27 +18,24 @@ def _length(x: float, y: float, z: float) -> float:
 
 
 @kernel
-def bounded_clusters(
-    origin: Array1, returns: Array2, labels: Indices1, free_rays: Array2, count: int, spacing: float, gap: float
-) -> Mask1:
+def bounded_clusters(rays: Rays, labels: Indices1, count: int, spacing: float, gap: float) -> Mask1:
     """Return of which clusters (count,) both sides are in sight: the rays beside them end well behind, or nowhere.
 
     Only to the left and right: what is higher than the field of view has sides as well.
 
     Args:
-        origin: place of the sensor (3,), NED (m).
-        returns: (n, 3), NED (m).
-        labels: cluster of each (n,), -1: none.
-        free_rays: ends of the rays without return (m, 3), NED (m).
+        rays: of the scan.
+        labels: cluster of each of its returns (n,), -1: none.
         count: number of clusters.
         spacing: mean angle between rays (rad).
         gap: depth from which on one return is behind another (m).
     """
-    n, m = returns.shape[0], free_rays.shape[0]
+    origin, returns, free, _ = rays
+    n, m = returns.shape[0], free.shape[0]
     directions, ranges = np.empty((n + m, 3)), np.empty(n + m)
     for j in range(n + m):
         for k in range(3):
-            directions[j, k] = (returns[j, k] if j < n else free_rays[j - n, k]) - origin[k]
+            directions[j, k] = (returns[j, k] if j < n else free[j - n, k]) - origin[k]
         ranges[j] = _length(directions[j, 0], directions[j, 1], directions[j, 2])
         for k in range(3):
             directions[j, k] /= max(ranges[j], 1e-9)

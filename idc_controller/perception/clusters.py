@@ -92,10 +92,7 @@ class Segmentation:
         labels = np.full(len(scan.returns), -1)
         for label, cluster in enumerate(clusters):
             labels[indices[cluster.part]] = label
-        bounded = bounded_clusters(
-            np.ascontiguousarray(scan.origin), scan.returns, labels, scan.free_rays, len(clusters), self._spacing,
-            _GAP_MIN,
-        )  # fmt: skip
+        bounded = bounded_clusters(scan.rays, labels, len(clusters), self._spacing, _GAP_MIN)
         seen = set()
         for is_bounded, cluster in zip(bounded.tolist(), clusters, strict=True):
             points = cluster.points[:, :2]

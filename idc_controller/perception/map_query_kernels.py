@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Array1, Array2, Indices1, Indices2, Mask1
+from idc_controller.arrays import Array, Array2, Indices1, Indices2, Mask1
 from idc_controller.compiled import inlined, kernel
 from idc_controller.perception.normal_kernels import surface_normal
 from idc_controller.perception.voxel_kernels import (
@@ -16,6 +16,8 @@ from idc_controller.perception.voxel_kernels import (
     PROVEN,
     SCATTER,
     WEIGHT,
+    Rays,
+    Rules,
     Voxels,
     cell_index,
     element_at,
@@ -63,9 +65,9 @@ def _square_distance(c: Array, d: Array) -> float:
 
 
 @inlined
-def _is_free_about(voxels: Voxels, point: Array, radius: float, size: float, free_passes: int) -> bool:
+def _is_free_about(voxels: Voxels, rules: Rules, point: Array, radius: float) -> bool:
     """Return whether all voxels that a ball reaches into were seen free and hold no standing points."""
-    x, y, z, cells = point[0], point[1], point[2], voxels.cells
+    x, y, z, cells, size = point[0], point[1], point[2], voxels.cells, rules.size
     for i in range(voxel(x - radius, size), voxel(x + radius, size) + 1):
         u = max(i * size - x, x - (i + 1) * size, 0.0)
         for j in range(voxel(y - radius, size), voxel(y + radius, size) + 1):
@@ -75,7 +77,7 @@ def _is_free_about(voxels: Voxels, point: Array, radius: float, size: float, fre
                 if u * u + v * v + w * w > radius * radius:
                     continue
                 block, cell = find_block(voxels, i, j, k), cell_index(i, j, k)
-                if block < 0 or cells[block, cell] & PASSED < free_passes:
+                if block < 0 or cells[block, cell] & PASSED < rules.free_passes:
                     return False
                 element = (voxels.links[block, cell] >> 8) - 1
                 if cells[block, cell] & HELD and voxels.elements[element, PROVEN] == 1.0:
@@ -84,26 +86,9 @@ def _is_free_about(voxels: Voxels, point: Array, radius: float, size: float, fre
 
 
 @kernel
-def unexplained_returns(
-    voxels: Voxels,
-    origin: Array1,
-    returns: Array2,
-    sigmas: Array1,
-    size: float,
-    free_passes: int,
-    chi_squared: float,
-) -> Mask1:
-    """Return which returns (n,) lie in what was seen free and farther from standing points than noise explains.
-
-    Args:
-        voxels: of the map.
-        origin: place of the sensor (3,).
-        returns: (n, 3), NED (m).
-        sigmas: standard deviations of range (m), position (m) and attitude (rad).
-        size: edge of a voxel (m).
-        free_passes: rays through a voxel from which on it was seen free.
-        chi_squared: square of the distance, in standard deviations, from which on noise explains it no more.
-    """
+def unexplained_returns(voxels: Voxels, rules: Rules, rays: Rays) -> Mask1:
+    """Return which returns (n,) lie in what was seen free and farther from standing points than noise explains."""
+    (origin, returns, _, sigmas), size, chi_squared = rays, rules.size, rules.chi_squared
     elements, found = voxels.elements, np.zeros(returns.shape[0], np.bool_)
     way, offset, covariance, own = np.empty(3), np.empty(3), np.empty((3, 3)), np.empty((3, 3))
     for p in range(returns.shape[0]):
@@ -116,7 +101,7 @@ def unexplained_returns(
         across = sigmas[1] ** 2 + sigmas[2] ** 2 * square
         along = sigmas[1] ** 2 + sigmas[0] ** 2
         radius = math.sqrt(chi_squared * max(across, along))
-        if not _is_free_about(voxels, returns[p], radius, size, free_passes):
+        if not _is_free_about(voxels, rules, returns[p], radius):
             continue
         for i in range(3):
             for j in range(3):

@@ -139,10 +139,7 @@ def _shares(scan: PlacedScan, places: tuple[Array, Array, Array]) -> tuple[float
     """Return of the rays of a scan that meet places which share ends there, and which passes; 0 and 0 if none does."""
     counts = np.zeros(2)
     if len(places[0]):
-        sigmas = np.array([scan.range_sigma, scan.position_sigma, scan.attitude_sigma])
-        count_rays(
-            np.ascontiguousarray(scan.origin), *scan.rays_by_sector, sigmas, *places, _BESIDE, _SIGMAS, counts,
-        )  # fmt: skip
+        count_rays(scan.rays, *scan.rays_by_sector, *places, _BESIDE, _SIGMAS, counts)
     ends, passes = counts.tolist()
     met = max(ends + passes, 1.0)
     return ends / met, passes / met

@@ -6,6 +6,7 @@ import numpy as np
 
 from idc_controller.arrays import Array, Array1, Array2, Indices1, Mask1
 from idc_controller.compiled import inlined, kernel
+from idc_controller.perception.voxel_kernels import Rays
 
 _SECTORS = 128
 """Of the bearing, about a sensor."""
@@ -21,17 +22,13 @@ def _sector(north: float, east: float) -> int:
 
 
 @kernel
-def by_sector(origin: Array1, returns: Array2, free: Array2) -> tuple[Array2, Mask1, Indices1]:
+def by_sector(rays: Rays) -> tuple[Array2, Mask1, Indices1]:
     """Return the rays of a scan in the order of their bearings, as :func:`count_rays` takes them.
 
-    Args:
-        origin: place of the sensor (3,), NED (m).
-        returns: ends of the rays that returned (n, 3).
-        free: ends of the rays that returned nothing up to there (k, 3).
-
     Returns:
-        The ends (n + k, 3), which of them are returns (n + k,), and the first ray of each sector, then n + k.
+        The ends (n + m, 3), which of them are returns (n + m,), and the first ray of each sector, then n + m.
     """
+    origin, returns, free, _ = rays
     count = len(returns) + len(free)
     sectors, first = np.empty(count, np.int64), np.zeros(_SECTORS + 1, np.int64)
     for r in range(count):
@@ -86,11 +83,10 @@ def _meeting(
 
 @kernel
 def count_rays(
-    origin: Array1,
+    rays: Rays,
     ends: Array2,
     returned: Mask1,
     first: Indices1,
-    sigmas: Array1,
     places: Array2,
     variances: Array1,
     normals: Array2,
@@ -101,9 +97,8 @@ def count_rays(
     """Count the rays of a scan that end where points of a body were, and those that pass through there.
 
     Args:
-        origin: place of the sensor (3,), NED (m).
-        ends, returned, first: its rays, see :func:`by_sector`.
-        sigmas: standard deviations of range (m), position (m) and attitude (rad).
+        rays: of the scan.
+        ends, returned, first: the same by their bearings, see :func:`by_sector`.
         places: of the points (m, 3).
         variances: of each on any axis (m,) (m2).
         normals: unit normals of the surface at each (m, 3); zero where it is not known: then it is taken to be turned
@@ -112,6 +107,7 @@ def count_rays(
         deviations: standard deviations within which it ends there.
         counts: of rays that end there, and that pass (2,), written to.
     """
+    origin, sigmas = rays.origin, rays.sigmas
     counts[:] = 0.0
     if not places.shape[0]:
         return

@@ -7,6 +7,7 @@ import numpy as np
 
 from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.perception.motion_evidence_kernels import by_sector
+from idc_controller.perception.voxel_kernels import Rays
 
 
 def _none() -> Array:
@@ -51,4 +52,11 @@ class PlacedScan:
     @cached_property
     def rays_by_sector(self) -> tuple[Array, Mask, Indices]:
         """All rays by their bearings, see :func:`~idc_controller.perception.motion_evidence_kernels.by_sector`."""
-        return by_sector(*map(np.ascontiguousarray, (self.origin, self.returns, self.free_rays)))
+        return by_sector(self.rays)
+
+    @cached_property
+    def rays(self) -> Rays:
+        """What kernels take of the scan."""
+        sigmas = np.array([self.range_sigma, self.position_sigma, self.attitude_sigma])
+        origin, returns, free = map(np.ascontiguousarray, (self.origin, self.returns, self.free_rays))
+        return Rays(origin, returns, free, sigmas)

@@ -2,7 +2,7 @@
 
 import math
 
-from idc_controller.arrays import Array, Array1, Array2, Indices2, Links2, Mask1
+from idc_controller.arrays import Array, Indices2, Links2, Mask1
 from idc_controller.compiled import inlined, kernel
 from idc_controller.perception.element_kernels import free_element, halve_memory, new_element
 from idc_controller.perception.voxel_kernels import (
@@ -23,6 +23,8 @@ from idc_controller.perception.voxel_kernels import (
     SURFACE,
     WAY,
     WEIGHT,
+    Rays,
+    Rules,
     Voxels,
     block_of,
     cell_index,
@@ -41,11 +43,9 @@ _RARER, _NOISIER = 8.0, 1.3
 
 
 @kernel
-def capacity_for(origin: Array1, returns: Array2, free: Array2, size: float) -> tuple[int, int]:
-    """Return upper bounds of the blocks and pages that a scan can add, of blocks with edge ``size`` (m).
-
-    ``origin`` (3,), ``returns`` (n, 3) and ends of ``free`` rays (m, 3): see :func:`carve`.
-    """
+def capacity_for(rays: Rays, size: float) -> tuple[int, int]:
+    """Return upper bounds of the blocks and pages that a scan can add, of blocks with edge ``size`` (m)."""
+    origin, returns, free, _ = rays
     by_rays, by_box, by_pages = 0.0, 1.0, 1.0
     for axis in range(3):
         reach = 0.0
@@ -93,7 +93,7 @@ def _explaining_element(voxels: Voxels, x: int, y: int, z: int, point: Array, va
 
 
 @inlined
-def _absorb_noise(voxels: Voxels, element: Array, free_passes: int, chi_squared: float) -> None:
+def _absorb_noise(voxels: Voxels, rules: Rules, element: Array) -> None:
     """Remove elements in the voxels about an element that its surface explains, with the noise of their points.
 
     Such are less accurate and were hit by much fewer scans: what is there, better scans would have hit as often.
@@ -113,42 +113,22 @@ def _absorb_noise(voxels: Voxels, element: Array, free_passes: int, chi_squared:
                 square = 0.0
                 for axis in range(3):
                     square += (elements[index, MEAN + axis] - element[MEAN + axis]) ** 2
-                if square <= chi_squared * other:
-                    free_element(voxels, index, free_passes, 0)
+                if square <= rules.chi_squared * other:
+                    free_element(voxels, index, rules.free_passes, 0)
 
 
 @kernel
-def add_returns(
-    voxels: Voxels,
-    origin: Array1,
-    returns: Array2,
-    taken: Mask1,
-    sigmas: Array1,
-    time: float,
-    scan: float,
-    size: float,
-    free_passes: int,
-    settling: float,
-    tolerance: float,
-    memory: float,
-    chi_squared: float,
-) -> None:
+def add_returns(voxels: Voxels, rules: Rules, rays: Rays, taken: Mask1, time: float, scan: float) -> None:
     """Add the returns of a scan to the elements of their voxels.
 
     Args:
         voxels: of the map, of enough capacity.
-        origin: place of the sensor (3,).
-        returns: (n, 3), NED (m).
-        taken: which of them are added (n,).
-        sigmas: standard deviations of range (m), position (m) and attitude (rad).
+        rules: of the map.
+        rays: of the scan.
+        taken: which of its returns are added (n,).
         time, scan: time (s) and number of the scan.
-        size: edge of a voxel (m).
-        free_passes: rays through a voxel from which on it was seen free.
-        settling: time (s) for which points in what was seen free must last to count as standing.
-        tolerance: by which bounds that grow are set beyond the point (m).
-        memory: scans that an element remembers.
-        chi_squared: square of the distance, in standard deviations, up to which noise explains it.
     """
+    (origin, returns, _, sigmas), size, tolerance = rays, rules.size, rules.tolerance
     blocks, links, elements = voxels.blocks, voxels.links, voxels.elements
     for p in range(returns.shape[0]):
         square = 0.0
@@ -167,7 +147,7 @@ def add_returns(
                 # It shows that those are still there, but not where.
                 elements[index, LAST_HIT], elements[index, GONE] = scan, 0.0
                 continue
-            was_free = voxels.cells[block, cell] & PASSED >= free_passes
+            was_free = voxels.cells[block, cell] & PASSED >= rules.free_passes
             index = new_element(voxels, block, cell)
             elements[index, BORN], elements[index, PROVEN] = time, 0.0 if was_free else 1.0
             for i in range(3):
@@ -177,11 +157,11 @@ def add_returns(
             element[LAST_HIT] = scan
             element[HITS] += 1.0
             element[GONE] = 0.0
-            halve_memory(element, memory)
-            if time - element[BORN] >= settling:
+            halve_memory(element, rules.memory)
+            if time - element[BORN] >= rules.settling:
                 element[PROVEN] = 1.0
             if element[HITS] >= _RARER and int(element[HITS]) % 8 == 0:
-                _absorb_noise(voxels, element, free_passes, chi_squared)
+                _absorb_noise(voxels, rules, element)
         weight = 1.0 / max(variance, 1e-6)
         element[WEIGHT] += weight
         element[POINTS] += 1.0

@@ -4,7 +4,7 @@ import math
 
 from idc_controller.arrays import Array, Array1, Array2
 from idc_controller.compiled import inlined, kernel
-from idc_controller.perception.voxel_kernels import HELD, PASSED, Voxels, cell_index, find_block, voxel
+from idc_controller.perception.voxel_kernels import HELD, PASSED, Rules, Voxels, cell_index, find_block, voxel
 
 
 @inlined
@@ -29,7 +29,7 @@ def _is_seen(voxels: Voxels, x: int, y: int, z: int, width: int, rays: int) -> b
 
 
 @kernel
-def unseen_cells(voxels: Voxels, path: Array2, body: Array1, size: float, width: int, rays: int, found: Array2) -> int:
+def unseen_cells(voxels: Voxels, rules: Rules, path: Array2, body: Array1, found: Array2) -> int:
     """Return how many cells of a body's way from the first place of its path on were not seen free.
 
     Cells are cubes of voxels, on the way if their middle is; those that the body holds at the first place are not. None
@@ -37,15 +37,14 @@ def unseen_cells(voxels: Voxels, path: Array2, body: Array1, size: float, width:
 
     Args:
         voxels: of the map.
+        rules: of the map.
         path: places of the body (P, 3), NED (m).
         body: upright cylinder: radius, extent up and down from its place, height above the ground below which nothing
             is seen (4,) (m).
-        size: edge of a voxel (m).
-        width: voxels along the edge of a cell, a divisor of a block's.
-        rays: followed rays through a cell from which on it was seen free.
         found: to be written to, at most so many (M, 4): last place before, by its index, and middle of the cell.
     """
-    edge = width * size
+    width = rules.sight_width
+    edge = width * rules.size
     radius, up, down, height = body[0], body[1], body[2], body[3]
     square = radius * radius
     before, count = 0, 0
@@ -71,7 +70,7 @@ def unseen_cells(voxels: Voxels, path: Array2, body: Array1, size: float, width:
                         continue
                     if was_first and first_top <= place <= first_bottom:
                         continue
-                    if not _is_seen(voxels, i * width, j * width, k * width, width, rays):
+                    if not _is_seen(voxels, i * width, j * width, k * width, width, rules.sight_rays):
                         if count == found.shape[0]:
                             return count
                         found[count, 0], found[count, 1], found[count, 2], found[count, 3] = before, north, east, place

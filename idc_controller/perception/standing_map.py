@@ -36,6 +36,7 @@ from idc_controller.perception.voxel_kernels import (
     NUMBER,
     SURFACE,
     USED,
+    Rules,
 )
 from idc_controller.perception.voxel_store import no_voxels, reserved
 
@@ -64,27 +65,24 @@ class StandingMap:
         # one: not all points need lie on one surface.
         self._sigmas = np.maximum(-ndtri(s.uncovered ** (1.0 / scans)), -1.0)
         self._scan = 0
-        self._prior = np.array([s.prior_hits, s.prior_passes])
-        self._evidence = np.array([s.evidence_of_hit, s.evidence_max, *s.evidence_of_pass])
-        self._chi_squared = float(upper_quantile(s.false_alarm, 3))
+        self._rules = Rules(
+            size=s.voxel, free_passes=s.free_passes, sigmas_beyond=s.sigmas_beyond, incidence=s.incidence_min,
+            prior=np.array([s.prior_hits, s.prior_passes]),
+            evidence=np.array([s.evidence_of_hit, s.evidence_max, *s.evidence_of_pass]),
+            memory=s.memory, settling=s.settling_time, tolerance=s.tolerance,
+            chi_squared=float(upper_quantile(s.false_alarm, 3)),
+            sight_width=s.sight_width, sight_rays=s.sight_rays,
+        )  # fmt: skip
 
     def add(self, scan: PlacedScan, moving: Mask | None = None) -> None:
         """Add one scan; ``moving``: returns (n,) of what is known to move, which leave no points."""
-        s = self.settings
-        origin, returns = np.ascontiguousarray(scan.origin), np.ascontiguousarray(scan.returns)
-        free = followed_rays(self._voxels, origin, np.ascontiguousarray(scan.free_rays), self._scan, s.exploring_stride)
-        taken = np.ones(len(returns), dtype=bool) if moving is None else ~moving
+        rules, free = self._rules, followed_rays(self._voxels, scan.rays, self._scan, self.settings.exploring_stride)
+        rays = scan.rays._replace(free=free)
+        taken = np.ones(len(rays.returns), dtype=bool) if moving is None else ~moving
         self._scan += 1
-        self._voxels = reserved(self._voxels, s.voxel, origin, returns, free)
-        sigmas, number = _sigmas(scan), float(self._scan)
-        add_returns(
-            self._voxels, origin, returns, taken, sigmas, scan.time, number, s.voxel, s.free_passes, s.settling_time,
-            s.tolerance, s.memory, self._chi_squared,
-        )  # fmt: skip
-        carve(
-            self._voxels, origin, returns, free, sigmas, number, s.voxel, s.free_passes, s.sigmas_beyond,
-            s.incidence_min, self._prior, self._evidence, s.memory,
-        )  # fmt: skip
+        self._voxels = reserved(self._voxels, rules.size, rays)
+        add_returns(self._voxels, rules, rays, taken, scan.time, float(self._scan))
+        carve(self._voxels, rules, rays, float(self._scan))
 
     def normals(self, points: Array) -> Array:
         """Return the unit normals of what stands at ``points`` (n, 3) -> (n, 3); zero where they are not known."""
@@ -113,10 +111,8 @@ class StandingMap:
         Of each the index of the last place before it (n,), and its middle (n, 3) (NED, m). ``body`` (4,): see
         :func:`~idc_controller.perception.sight_kernels.unseen_cells`.
         """
-        s, found = self.settings, np.empty((most, 4))
-        count = unseen_cells(
-            self._voxels, np.ascontiguousarray(path), body, s.voxel, s.sight_width, s.sight_rays, found
-        )
+        found = np.empty((most, 4))
+        count = unseen_cells(self._voxels, self._rules, np.ascontiguousarray(path), body, found)
         return found[:count, 0].astype(np.int64), found[:count, 1:]
 
     def first_hidden(self, path: Array, sensors: Array, heights: Array) -> int:
@@ -145,10 +141,7 @@ class StandingMap:
         All that lies within their noise was seen free, and they are farther from all standing points than their noise
         and those points' spread explain, at the stated false-alarm probability.
         """
-        s, origin, returns = self.settings, np.ascontiguousarray(scan.origin), np.ascontiguousarray(scan.returns)
-        return queries.unexplained_returns(
-            self._voxels, origin, returns, _sigmas(scan), s.voxel, s.free_passes, self._chi_squared
-        )
+        return queries.unexplained_returns(self._voxels, self._rules, scan.rays)
 
     def take_changed_blocks(self) -> tuple[Indices, Indices, Mask]:
         """Return the blocks that changed since the last call.
@@ -182,8 +175,7 @@ class StandingMap:
 
         ``box`` (8,): see :mod:`idc_controller.perception.upright_box`; ``among``: blocks that are searched.
         """
-        s = self.settings
-        return boxes.gaps_within(self._voxels, among, box, s.voxel, s.free_passes, most)
+        return boxes.gaps_within(self._voxels, self._rules, among, box, most)
 
     def cover(self, indices: Indices, bounds: Array) -> None:
         """Write the bounds of the true surface at elements ``indices`` (n,) into ``bounds`` (E, 6) (m)."""
@@ -218,7 +210,3 @@ class StandingMap:
         """Return the first voxels (n, 3) of ``blocks`` (n,)."""
         keys = self._voxels.blocks[blocks, KEY]
         return np.asarray(((keys[:, None] >> (42, 21, 0) & 0x1FFFFF) - (1 << 20)) * EDGE)
-
-
-def _sigmas(scan: PlacedScan) -> Array:
-    return np.array([scan.range_sigma, scan.position_sigma, scan.attitude_sigma])

@@ -19,6 +19,7 @@ from idc_controller.perception.voxel_kernels import (
     MEAN,
     POINTS,
     WEIGHT,
+    Rules,
     Voxels,
     cell_index,
     element_at,
@@ -71,13 +72,11 @@ def cover_points(voxels: Voxels, indices: Indices1, sigmas: Array1, tolerance: f
 
 
 @inlined
-def _gaps_of_block(
-    voxels: Voxels, block: int, box: Array, reach: Array, size: float, free_passes: int, found: Array, count: int
-) -> int:
+def _gaps_of_block(voxels: Voxels, rules: Rules, block: int, box: Array, reach: Array, found: Array, count: int) -> int:
     """Write the gaps of one block into ``found`` from row ``count`` on; return how many there are then."""
     if voxels.blocks[block, FREE_CELLS] == 0:
         return count
-    key = voxels.blocks[block, KEY]
+    key, size = voxels.blocks[block, KEY], rules.size
     x0, y0, z0 = key_corner(key, 0), key_corner(key, 1), key_corner(key, 2)
     for x in range(max(x0, voxel(box[0] - reach[0], size)), min(x0 + EDGE, voxel(box[0] + reach[0], size) + 1)):
         for y in range(max(y0, voxel(box[1] - reach[1], size)), min(y0 + EDGE, voxel(box[1] + reach[1], size) + 1)):
@@ -86,7 +85,7 @@ def _gaps_of_block(
                 continue
             for z in range(max(z0, voxel(box[2] - reach[2], size)), min(z0 + EDGE, voxel(box[2] + reach[2], size) + 1)):
                 cell = cell_index(x, y, z)
-                if voxels.cells[block, cell] != free_passes or voxels.links[block, cell] & 255:
+                if voxels.cells[block, cell] != rules.free_passes or voxels.links[block, cell] & 255:
                     continue
                 if abs((z + 0.5) * size - box[2]) > box[5]:
                     continue
@@ -98,30 +97,29 @@ def _gaps_of_block(
 
 
 @kernel
-def gaps_within(voxels: Voxels, among: Indices1, box: Array1, size: float, free_passes: int, most: int) -> Array2:
+def gaps_within(voxels: Voxels, rules: Rules, among: Indices1, box: Array1, most: int) -> Array2:
     """Return the middles (n, 3) of the gaps in a box: voxels seen free, with no point in the 27 voxels about them.
 
     Args:
         voxels: of the map.
+        rules: of the map.
         among: blocks that are searched; none: all that the box reaches into.
         box: (8,).
-        size: edge of a voxel (m).
-        free_passes: rays through a voxel from which on it was seen free.
         most: gaps that are returned.
     """
-    found, count, reach = np.empty((most, 3)), 0, np.empty(3)
+    size, found, count, reach = rules.size, np.empty((most, 3)), 0, np.empty(3)
     reach[0] = box[3] * abs(box[6]) + box[4] * abs(box[7])
     reach[1] = box[3] * abs(box[7]) + box[4] * abs(box[6])
     reach[2] = box[5]
     if among.shape[0]:
         for block in among:
             if count < most:
-                count = _gaps_of_block(voxels, block, box, reach, size, free_passes, found, count)
+                count = _gaps_of_block(voxels, rules, block, box, reach, found, count)
         return found[:count].copy()
     for x in range(voxel(box[0] - reach[0], size) >> 3, (voxel(box[0] + reach[0], size) >> 3) + 1):
         for y in range(voxel(box[1] - reach[1], size) >> 3, (voxel(box[1] + reach[1], size) >> 3) + 1):
             for z in range(voxel(box[2] - reach[2], size) >> 3, (voxel(box[2] + reach[2], size) >> 3) + 1):
                 block = find_block(voxels, x << 3, y << 3, z << 3)
                 if block >= 0 and count < most:
-                    count = _gaps_of_block(voxels, block, box, reach, size, free_passes, found, count)
+                    count = _gaps_of_block(voxels, rules, block, box, reach, found, count)
     return found[:count].copy()

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from idc_controller.arrays import Array, Array2, Cells2, Indices, Indices1, Indices2, Links2
+from idc_controller.arrays import Array, Array1, Array2, Cells2, Indices, Indices1, Indices2, Links2
 from idc_controller.compiled import inlined
 
 
@@ -27,6 +27,48 @@ class Voxels(NamedTuple):
     """What is known of the points in a voxel (E, COLUMNS)."""
     counts: Indices1
     """Blocks, elements ever used, first spare element plus one, serial number of the last element, pages (5,)."""
+
+
+class Rules(NamedTuple):
+    """How a standing map takes scans: constants that follow from its settings."""
+
+    size: float
+    """Edge of a voxel (m)."""
+    free_passes: int
+    """Rays through a voxel from which on it was seen free."""
+    sigmas_beyond: float
+    """Standard deviations by which a ray must end beyond what it passes."""
+    incidence: float
+    """Least cosine between a ray that passes through points, and their surface's normal."""
+    prior: Array1
+    """Scans that hit and that pass what stands, before any has told otherwise (2,)."""
+    evidence: Array1
+    """Nats of one scan's hit, and most of them; least of one that passes through, and along a surface (4,)."""
+    memory: float
+    """Scans that an element remembers."""
+    settling: float
+    """Time for which points in what was seen free must last to count as standing (s)."""
+    tolerance: float
+    """By which bounds that grow are set beyond the point (m)."""
+    chi_squared: float
+    """Square of the distance, in standard deviations, up to which noise explains it."""
+    sight_width: int
+    """Voxels along the edge of a cell in which space is seen free, a divisor of a block's."""
+    sight_rays: int
+    """Followed rays through a cell from which on it was seen free."""
+
+
+class Rays(NamedTuple):
+    """The rays of one scan. SI units, NED."""
+
+    origin: Array1
+    """Place of the sensor (3,)."""
+    returns: Array2
+    """Points that rays hit (n, 3)."""
+    free: Array2
+    """Ends of the rays that returned nothing up to there (m, 3)."""
+    sigmas: Array1
+    """Standard deviations of range (m), position (m) and attitude (rad)."""
 
 
 EDGE = 8

@@ -5,9 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from idc_controller.arrays import Array
 from idc_controller.perception.return_kernels import capacity_for, enter_pages
-from idc_controller.perception.voxel_kernels import BLOCKS, CELLS, COLUMNS, EDGE, PAGE_BLOCKS, PAGES, USED, Voxels
+from idc_controller.perception.voxel_kernels import BLOCKS, CELLS, COLUMNS, EDGE, PAGE_BLOCKS, PAGES, USED, Rays, Voxels
 
 _FIRST_PAGES, _FIRST_BLOCKS, _FIRST_ELEMENTS = 16, 4096, 4096
 
@@ -25,12 +24,9 @@ def no_voxels() -> Voxels:
     )
 
 
-def reserved(voxels: Voxels, size: float, origin: Array, returns: Array, free: Array) -> Voxels:
-    """Return ``voxels`` of that ``size`` (m) with capacity for all that a scan from ``origin`` (3,) can add.
-
-    ``returns`` (n, 3) and ends of ``free`` rays (m, 3), NED (m).
-    """
-    blocks, pages = capacity_for(origin, returns, free, EDGE * size)
+def reserved(voxels: Voxels, size: float, rays: Rays) -> Voxels:
+    """Return ``voxels`` of that ``size`` (m) with capacity for all that a scan can add."""
+    blocks, pages = capacity_for(rays, EDGE * size)
     number = voxels.counts.tolist()
     if number[PAGES] + pages > len(voxels.pages):
         grown = _grown(voxels.pages, number[PAGES] + pages, -1)
@@ -39,7 +35,7 @@ def reserved(voxels: Voxels, size: float, origin: Array, returns: Array, free: A
     if (rows := number[BLOCKS] + blocks) > len(voxels.blocks):
         grown_of = {name: _grown(getattr(voxels, name), rows) for name in ("blocks", "cells", "links")}
         voxels = voxels._replace(**grown_of)
-    if (rows := number[USED] + len(returns)) > len(voxels.elements):
+    if (rows := number[USED] + len(rays.returns)) > len(voxels.elements):
         voxels = voxels._replace(elements=_grown(voxels.elements, rows))
     return voxels
 

@@ -182,9 +182,7 @@ def test_unseen_cells_are_those_of_the_plain_formula(seed):
     body = np.array([1.2, 1.0, 0.8, 0.4])
     before, middles = seen.unseen(path, body, 10_000)
     found = np.empty((10_000, 4))
-    plain = unseen_cells.py_func(
-        seen._voxels, path, body, settings.voxel, settings.sight_width, settings.sight_rays, found
-    )
+    plain = unseen_cells.py_func(seen._voxels, seen._rules, path, body, found)
     assert plain == len(before) > 0
     np.testing.assert_array_equal(found[:plain, 0], before)
     np.testing.assert_array_equal(found[:plain, 1:], middles)

@@ -13,6 +13,7 @@ from idc_controller.perception.motion_evidence_kernels import by_sector, count_r
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.surfaces.points import SurfacePoints
+from idc_controller.perception.voxel_kernels import Rays
 
 MAP = StandingMapSettings()
 EVIDENT = -math.log(1e-3)
@@ -54,8 +55,8 @@ def test_counted_rays_agree_with_plain_reference(seed, count, spread, upright):
     sigmas, variances, found = np.array([0.05, 0.02, 0.004]), rng.uniform(0.001, 0.01, count), np.zeros(2)
     normals = rng.normal(size=(count, 3))
     normals *= rng.integers(2, size=(count, 1)) / np.linalg.norm(normals, axis=1)[:, None]
-    rays, body = (origin, ends[:40], ends[40:]), (sigmas, places, variances, normals, 0.15, 3.0)
-    count_rays(origin, *by_sector(*rays), *body, found)
+    rays, body = Rays(origin, ends[:40], ends[40:], sigmas), (places, variances, normals, 0.15, 3.0)
+    count_rays(rays, *by_sector(rays), *body, found)
     assert found.tolist() == counted(*rays, *body)
 
 
