@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -15,14 +15,12 @@ from idc_controller.geometry.shape import (
     ANGLE,
     LENGTH,
     CollisionGeometry,
+    DistanceShape,
     PlanView,
     RoundedBox,
     Shape,
     Vector,
 )
-
-if TYPE_CHECKING:
-    import coal
 
 
 class _BoxBody:
@@ -36,7 +34,7 @@ class _BoxBody:
         x, y, z = self.size
         return RoundedBox(x / 2.0, y / 2.0, z / 2.0)
 
-    def geometry(self) -> coal.ShapeBase:
+    def geometry(self) -> DistanceShape:
         """Return the shape for distance queries, in its own frame."""
         import coal
 

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.oriented import OrientedShape
-from idc_controller.geometry.shape import LENGTH, CollisionGeometry, RoundedBox
-
-if TYPE_CHECKING:
-    import coal
+from idc_controller.geometry.shape import LENGTH, CollisionGeometry, DistanceShape, RoundedBox
 
 
 @dataclass(frozen=True)
@@ -45,7 +42,7 @@ class Capsule(OrientedShape):
         """The body: a line rounded in all directions."""
         return RoundedBox(0.0, 0.0, self.length / 2.0, ball=self.radius)
 
-    def geometry(self) -> coal.ShapeBase:
+    def geometry(self) -> DistanceShape:
         """Return the shape for distance queries, in its own frame."""
         import coal
 

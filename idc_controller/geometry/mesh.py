@@ -5,16 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.oriented import OrientedShape
-from idc_controller.geometry.shape import CollisionGeometry, Vector
-
-if TYPE_CHECKING:
-    import coal
+from idc_controller.geometry.shape import CollisionGeometry, DistanceShape, Vector
 
 
 class MeshHull(NamedTuple):
@@ -54,7 +51,7 @@ class Mesh(OrientedShape):
         return self.scale * np.array(self.file.corners)
 
     @cached_property
-    def _geometry(self) -> coal.ShapeBase:
+    def _geometry(self) -> DistanceShape:
         import coal
 
         vertices, facets = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
@@ -63,7 +60,7 @@ class Mesh(OrientedShape):
             facets.append(coal.Triangle(*map(int, triangle)))
         return coal.Convex(vertices, facets)
 
-    def geometry(self) -> coal.ShapeBase:
+    def geometry(self) -> DistanceShape:
         """Return the shape for distance queries, in its own frame."""
         return self._geometry
 

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.shape import LENGTH, CollisionGeometry, PlanView, RoundedBox, Shape, Vector
-
-if TYPE_CHECKING:
-    import coal
+from idc_controller.geometry.shape import LENGTH, CollisionGeometry, DistanceShape, RoundedBox, Shape, Vector
 
 
 @dataclass(frozen=True)
@@ -31,7 +28,7 @@ class Pole(Shape):
         """Sizes in words."""
         return f"radius {self.radius:.4g} m, {self.height:g} m high"
 
-    def geometry(self) -> coal.ShapeBase:
+    def geometry(self) -> DistanceShape:
         """Return the shape for distance queries."""
         import coal
 
@@ -50,10 +47,3 @@ class Pole(Shape):
     def rounded_box(self) -> RoundedBox:
         """The body: a vertical line rounded horizontally."""
         return RoundedBox(0.0, 0.0, self.height / 2.0, radial=self.radius)
-
-    @property
-    def plan_view(self) -> PlanView:
-        """A circle."""
-        import shapely
-
-        return PlanView(shapely.Point(0.0, 0.0), self.radius)

@@ -18,10 +18,11 @@ from idc_controller.arrays import Array
 from idc_controller.errors import ShapeError
 
 if TYPE_CHECKING:
-    import coal
     import shapely
 
 Vector = tuple[float, float, float]
+DistanceShape = Any
+"""A ``coal.ShapeBase``; coal is imported where one is made, as that takes long."""
 
 _CIRCLE_SEGMENTS = 32
 """Segments of a quarter of a circle, where a plan view is drawn as a polygon."""
@@ -162,7 +163,7 @@ class Shape(ABC):
         """Sizes in words, for the operator."""
 
     @abstractmethod
-    def geometry(self) -> coal.ShapeBase:
+    def geometry(self) -> DistanceShape:
         """Return the shape for distance queries, in its own frame."""
 
     @abstractmethod
@@ -221,6 +222,9 @@ class Shape(ABC):
         return self.upright_bounds.half_z + self.upright_bounds.ball
 
     @property
-    @abstractmethod
     def plan_view(self) -> PlanView:
-        """The body seen from above."""
+        """The body seen from above; of what is round about its centre a circle."""
+        import shapely
+
+        assert self.round_axes is not None
+        return PlanView(shapely.Point(0.0, 0.0), self.columns.radius)

@@ -5,11 +5,11 @@ hull's silhouette along axis i: exact for a box, which shows less of itself to w
 corner. A UAV is the same from all sides.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Array1
 
 AIR_DENSITY = 1.225  # kg/m3
 BOX_DRAG = 1.05  # c_d of a cube, across a face
@@ -18,16 +18,15 @@ SMOOTHING = 0.3
 """|u| is sqrt(u^2 + SMOOTHING^2) (m/s): what is planned with drag needs its derivatives."""
 
 
-@dataclass(frozen=True, eq=False)
-class Air:
+class Air(NamedTuple):
     """The wind, and what drag it makes.
 
     ``wind``: velocity of the air (3,) (m/s, NED). ``payload``: 1/2 rho c_d A of its silhouettes along x, y, z (3,),
     ``uav``: 1/2 rho c_d A of each of the UAVs (kg/m). ``limit``: the drag on the payload fades to this (N).
     """
 
-    wind: Array
-    payload: Array
+    wind: Array1
+    payload: Array1
     uav: float
     limit: float = np.inf
 

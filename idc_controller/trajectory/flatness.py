@@ -21,7 +21,7 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.model.drag import Air
 from idc_controller.parameters import SystemParameters
-from idc_controller.trajectory.flatness_kernels import flat_map
+from idc_controller.trajectory.flatness_kernels import Team, flat_map
 
 # Spacing of the samples from which derivatives of the UAVs' forces are taken (s): the trajectory is smooth up to snap
 # only, and these derivatives go beyond it.
@@ -107,13 +107,11 @@ def flat_reference(
     index[order] = np.cumsum(is_new) - 1
     grid, places = grid[order[is_new]], index.reshape(-1, 5)
     derivatives = np.ascontiguousarray(trajectory.derivatives(grid))
-    air = load.air or _STILL_AIR
     constant = np.empty((N, 3))
     constant[:] = load.uav_force
     x, u, payload, (q, q_dot, q_ddot), tension, thrust, on_payload, on_uavs = flat_map(
-        derivatives, places, STENCIL, load.mass, load.force, constant,
-        load.air is not None, air.wind, air.payload, air.uav, air.limit,
-        p.g, p.p, p.l, p.m, p.attitude_kp, p.attitude_kd, p.motor_time_constant,
+        derivatives, places, STENCIL, load.mass, load.force, constant, load.air is not None, load.air or _STILL_AIR,
+        Team(p.g, p.p, p.l, p.m, p.attitude_kp, p.attitude_kd, p.motor_time_constant),
     )  # fmt: skip
     return FlatReference(payload, FlatForces(q, q_dot, q_ddot, tension, thrust, on_payload, on_uavs), x, u)
 

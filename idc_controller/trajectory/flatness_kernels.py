@@ -1,10 +1,24 @@
 """Compiled kernels of the flat map; see :mod:`idc_controller.trajectory.flatness`."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from idc_controller.arrays import Array, Array2, Array3, Const1, Const2, Indices, Indices2
 from idc_controller.compiled import inlined, kernel
-from idc_controller.model.drag import SMOOTHING
+from idc_controller.model.drag import SMOOTHING, Air
+
+
+class Team(NamedTuple):
+    """What the flat map takes of :class:`~idc_controller.parameters.SystemParameters`."""
+
+    g: float
+    p: Const2
+    l: Const1
+    m: Const1
+    attitude_kp: float
+    attitude_kd: float
+    motor_time_constant: float
 
 
 @inlined
@@ -17,17 +31,17 @@ def _fading(square: float, limit: float) -> tuple[float, float, float]:
 
 
 @inlined
-def _drag_along(derivatives: Array, j: int, wind: Array, coefficients: Array, limit: float) -> Array:
+def _drag_along(derivatives: Array, j: int, air: Air) -> Array:
     """Return the drag on the payload and its first two derivatives in time (3, 3) (N, NED) at instant ``j``."""
     u, u_1, u_2 = np.empty(3), np.empty(3), np.empty(3)
     s = s_1 = s_2 = 0.0
     for c in range(3):
-        u[c], u_1[c], u_2[c] = wind[c] - derivatives[1, j, c], -derivatives[2, j, c], -derivatives[3, j, c]
+        u[c], u_1[c], u_2[c] = air.wind[c] - derivatives[1, j, c], -derivatives[2, j, c], -derivatives[3, j, c]
         size = np.sqrt(u[c] * u[c] + SMOOTHING * SMOOTHING)
         along = u[c] * u_1[c] / size
-        s += size * coefficients[c]
-        s_1 += along * coefficients[c]
-        s_2 += (u_1[c] ** 2 + u[c] * u_2[c] - along**2) / size * coefficients[c]
+        s += size * air.payload[c]
+        s_1 += along * air.payload[c]
+        s_2 += (u_1[c] ** 2 + u[c] * u_2[c] - along**2) / size * air.payload[c]
     square = square_1 = square_2 = 0.0
     for c in range(3):
         F, F_1, F_2 = s * u[c], s_1 * u[c] + s * u_1[c], s_2 * u[c] + 2.0 * s_1 * u_1[c] + s * u_2[c]
@@ -35,7 +49,7 @@ def _drag_along(derivatives: Array, j: int, wind: Array, coefficients: Array, li
         square += F * F
         square_1 += 2.0 * F * F_1
         square_2 += 2.0 * (F_1 * F_1 + F * F_2)
-    f, by, by_2 = _fading(square, limit)
+    f, by, by_2 = _fading(square, air.limit)
     f_1, f_2 = by * square_1, by_2 * square_1**2 + by * square_2
     drag = np.empty((3, 3))
     for c in range(3):
@@ -79,25 +93,13 @@ def _share_tension(q: Array, total: float, p: Array, tension: Array) -> None:
 
 @inlined
 def _forces(
-    derivatives: Array,
-    mass: float,
-    force: Array,
-    uav_force: Array,
-    has_air: bool,
-    wind: Array,
-    payload_drag: Array,
-    uav_drag: float,
-    drag_limit: float,
-    g: float,
-    p: Array,
-    l: Array,
-    m: Array,
+    derivatives: Array, mass: float, force: Array, uav_force: Array, has_air: bool, air: Air, team: Team
 ) -> tuple[Array, Array, Array, Array, Array]:
     """Return links, tensions, forces on the payload and thrusts at G instants, see :func:`flat_map`.
 
     Then what the air adds to the force on each UAV (G, 3) (N).
     """
-    G, N = derivatives.shape[1], len(m)
+    G, N, g, p, l, m = derivatives.shape[1], len(team.m), team.g, team.p, team.l, team.m
     links, tension = np.empty((3, G, 3)), np.empty((G, N))
     on_payload, thrust, on_uav = np.empty((G, 3)), np.empty((G, N, 3)), np.zeros((G, 3))
     w, jerk, snap = np.empty(3), np.empty(3), np.empty(3)
@@ -106,17 +108,17 @@ def _forces(
             on_payload[j, c] = force[c]
             jerk[c], snap[c] = derivatives[3, j, c], derivatives[4, j, c]
         if has_air:
-            drag = _drag_along(derivatives, j, wind, payload_drag, drag_limit)
+            drag = _drag_along(derivatives, j, air)
             airspeed = 0.0
             for c in range(3):
                 on_payload[j, c] += drag[0, c]
                 jerk[c] -= drag[1, c] / mass
                 snap[c] -= drag[2, c] / mass
-                airspeed += (wind[c] - derivatives[1, j, c]) ** 2
+                airspeed += (air.wind[c] - derivatives[1, j, c]) ** 2
             airspeed = np.sqrt(airspeed)
             for c in range(3):
                 # The UAVs' own velocity differs little from the payload's.
-                on_uav[j, c] = uav_drag * airspeed * (wind[c] - derivatives[1, j, c])
+                on_uav[j, c] = air.uav * airspeed * (air.wind[c] - derivatives[1, j, c])
         square = 0.0
         for c in range(3):
             w[c] = -derivatives[2, j, c] + on_payload[j, c] / mass
@@ -146,10 +148,10 @@ def _forces(
 
 @inlined
 def _states(
-    derivatives: Array, links: Array, thrust: Array, index: Indices, h: float, kp: float, kd: float, T_m: float
+    derivatives: Array, links: Array, thrust: Array, index: Indices, h: float, team: Team
 ) -> tuple[Array, Array]:
     """Return the states (K, 12 + 11 N) and set-points (K, 3 N) of the reference at K times."""
-    K, N = len(index), thrust.shape[1]
+    K, N, T_m = len(index), thrust.shape[1], team.motor_time_constant
     x, u = np.zeros((K, 12 + 11 * N)), np.empty((K, 3 * N))
     s, s_dot, n_at, n_dot_at, n_acc_at, f_at = 12, 12 + 2 * N, 12 + 4 * N, 12 + 6 * N, 12 + 8 * N, 12 + 10 * N
     f, n = np.empty(5), np.empty(5)
@@ -172,7 +174,7 @@ def _states(
                 at = 2 * i + c
                 x[k, s + at], x[k, s_dot + at] = links[0, centre, c], links[1, centre, c]
                 x[k, n_at + at], x[k, n_dot_at + at], x[k, n_acc_at + at] = n[2], n_dot, n_acc
-                u[k, at] = n[2] + (kd * n_dot + n_acc + T_m * n_jerk) / kp
+                u[k, at] = n[2] + (team.attitude_kd * n_dot + n_acc + T_m * n_jerk) / team.attitude_kp
     return x, u
 
 
@@ -185,17 +187,8 @@ def flat_map(
     force: Const1,
     uav_force: Array2,
     has_air: bool,
-    wind: Const1,
-    payload_drag: Const1,
-    uav_drag: float,
-    drag_limit: float,
-    g: float,
-    p: Const2,
-    l: Const1,
-    m: Const1,
-    kp: float,
-    kd: float,
-    T_m: float,
+    air: Air,
+    team: Team,
 ) -> tuple[Array2, Array2, Array3, Array3, Array2, Array3, Array2, Array3]:
     """Return the reference at K times, in the coordinates of the linear model, and the forces there; NED, SI.
 
@@ -205,20 +198,16 @@ def flat_map(
         h: spacing of these points (s).
         mass: of the payload (kg).
         force, uav_force: constant forces on the payload (3,) and on each UAV (N, 3) (N).
-        has_air: whether there is drag; the four arguments that follow are of :class:`idc_controller.model.drag.Air`.
-        g, p, l, m: gravity, attachment points, lengths of the links and masses of the UAVs, see
-            :class:`~idc_controller.parameters.SystemParameters`.
-        kp, kd, T_m: of the attitude loop and the motors, which are inverted: the set-point leads the attitude.
+        has_air: whether there is drag, of ``air``.
+        team: attitude loops and motors are inverted: the set-point leads the attitude.
 
     Returns:
         States (K, 12 + 11 N), set-points (K, 3 N), derivatives of the payload's position (5, K, 3), link directions
         from UAV to payload with two derivatives (3, K, 3), tensions (K, N) (N), thrust vectors of the UAVs (K, N, 3)
         (N), and the forces of the load on the payload (K, 3) and on the UAVs (K, N, 3) (N).
     """
-    links, tension, on_payload, thrust, on_uav = _forces(
-        derivatives, mass, force, uav_force, has_air, wind, payload_drag, uav_drag, drag_limit, g, p, l, m
-    )
-    x, u = _states(derivatives, links, thrust, index, h, kp, kd, T_m)
+    links, tension, on_payload, thrust, on_uav = _forces(derivatives, mass, force, uav_force, has_air, air, team)
+    x, u = _states(derivatives, links, thrust, index, h, team)
     at = index[:, 2].copy()
     on_uavs = uav_force + on_uav[at].reshape(-1, 1, 3)
     return x, u, derivatives[:, at], links[:, at], tension[at], thrust[at], on_payload[at], on_uavs

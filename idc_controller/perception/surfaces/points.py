@@ -9,8 +9,8 @@ import numpy as np
 from idc_controller.arrays import Array, Mask
 from idc_controller.perception.settings import SurfaceSettings
 
-_SCORE_CAP = 16.0
-_MEDIAN_OF_SQUARE = 0.455  # of a normal variable of variance 1
+SCORE_CAP = 16.0
+MEDIAN_OF_SQUARE = 0.455  # of a normal variable of variance 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,13 +88,13 @@ class Fit:
 
 def score(residual: Array, variance: Array) -> float:
     """Return the score of :class:`Fit`; single points that do not belong count for little."""
-    return float(np.mean(np.minimum(residual**2 / variance, _SCORE_CAP)))
+    return float(np.mean(np.minimum(residual**2 / variance, SCORE_CAP)))
 
 
 def unexplained(residual: Array, variance: Array, fitted: int) -> float:
     """Return what :class:`Fit` leaves unexplained after ``fitted`` quantities were found; outliers do not count."""
     n = len(residual)
-    return float(np.median(residual**2) / _MEDIAN_OF_SQUARE * n / max(n - fitted, 1) - np.median(variance))
+    return float(np.median(residual**2) / MEDIAN_OF_SQUARE * n / max(n - fitted, 1) - np.median(variance))
 
 
 class EndOfSurface:

@@ -9,10 +9,9 @@ import numpy as np
 
 from idc_controller.arrays import Array, Array1, Array2
 from idc_controller.compiled import inlined, kernel
+from idc_controller.perception.surfaces.points import MEDIAN_OF_SQUARE, SCORE_CAP
 
 _FARTHEST = 0.0025  # m2: from three times its root on, residuals count for less and less
-_SCORE_CAP = 16.0
-_MEDIAN_OF_SQUARE = 0.455  # of a normal variable of variance 1
 
 
 @inlined
@@ -163,6 +162,6 @@ def fitted_round(
             if residual[p] <= -end_depth - end_share * theta[axes]:
                 residual[p] = min(-residual[p], points[p, 2] - highest)
     squared = residual**2
-    score = np.minimum(squared / variance, _SCORE_CAP).mean()
-    excess = np.median(squared) / _MEDIAN_OF_SQUARE * n / max(n - free, 1) - np.median(variance)
+    score = np.minimum(squared / variance, SCORE_CAP).mean()
+    excess = np.median(squared) / MEDIAN_OF_SQUARE * n / max(n - free, 1) - np.median(variance)
     return theta, variances, score, excess
