@@ -33,6 +33,7 @@ class Piece:
     """An upright box that covers the points in some voxels of the standing map."""
 
     number: int
+    """The same for as long as most of the piece exists."""
     row: int
     """Its row in the table of bounds."""
     members: Indices
@@ -47,11 +48,6 @@ class Piece:
     """Voxels when merging was tried last."""
     tried: dict[int, int] = field(default_factory=dict)
     """Voxels of both when it could not be merged with another piece."""
-
-    @property
-    def name(self) -> str:
-        """The same for as long as most of the piece exists."""
-        return f"piece {self.number}"
 
     @property
     def centre(self) -> Array:
