@@ -2,7 +2,7 @@
 
 import { Color, DirectionalLight, HemisphereLight, Scene as World, WebGLRenderer } from 'three';
 import { h } from './dom.js';
-import { Cameras } from './scene/cameras.js';
+import { besideClearance, Cameras } from './scene/cameras.js';
 import { Clearance } from './scene/clearance.js';
 import { Detected } from './scene/detected.js';
 import { Estimate } from './scene/estimate.js';
@@ -22,7 +22,7 @@ import { Readout } from './scene/readout.js';
 /** @typedef {import('./data.js').Run} Run */
 /** @typedef {'free'|'follow'|'top'} Kind */
 
-const LARGE = 60; // m: in a wider flight the formation would be too small, so the camera goes along with it
+const LARGE = 60; // m: in a wider flight the formation would be too small in the overview
 
 export class Scene {
   /**
@@ -47,13 +47,17 @@ export class Scene {
     const box = extent(run);
     this.world.add(ground(run, box, this.palette, this.labels), fence(run, -box.low[2], this.palette));
     const size = (run.meta.link_length ?? 3) + 2;
-    this.cameras = new Cameras(canvas, box, size, () => this.invalidate());
-    this.panel = new Panel(element, this.parts(ghost), this.scales(), this.palette, (kind) => this.setCamera(kind));
+    this.cameras = new Cameras(canvas, box, size, besideClearance(run), () => this.invalidate());
+    this.panel = new Panel(element, this.parts(ghost), this.scales(), this.palette, {
+      choose: (kind) => this.setCamera(kind),
+      zoom: (factor) => this.cameras.zoom(factor),
+      cover: () => this.resize(),
+    });
     this.readout = new Readout(element, run);
     const isLarge = Math.max(box.high[0] - box.low[0], box.high[1] - box.low[1]) > LARGE;
     this.update();
     this.resize();
-    this.setCamera(isLarge ? 'follow' : 'free');
+    this.setCamera(isLarge || run.clearance ? 'follow' : 'free');
     this.observer = new ResizeObserver(() => this.resize());
     this.observer.observe(element);
     this.palette.onChange(() => {
@@ -73,7 +77,7 @@ export class Scene {
     const sun = new DirectionalLight(new Color(0xffffff), 1.7);
     sun.position.set(-0.5, 1, 0.7);
     world.add(sun, new HemisphereLight(new Color(0xffffff), new Color(0xb0b4ba), 1.9));
-    this.formation = new Formation(run, palette, 'flown');
+    this.formation = new Formation(run, palette, 'flown', labels);
     this.ghost = ghost ? new Formation(ghost, palette, 'ghost') : null;
     this.ghostTrail = ghost ? new Trail(ghost, palette, 'series-7') : null;
     this.obstacles = new Obstacles(run, palette, labels);
@@ -110,7 +114,7 @@ export class Scene {
       run.has('horizon.plan') && { name: 'plan', colour: 'plan', look: 'line', shown: true, show: toggle(this.plans.plans[0].line) },
       run.has('horizon.stop') && { name: 'stop plan', colour: 'stop', look: 'dashed', shown: true, show: toggle(this.plans.plans[1].line) },
       { name: 'flown path', colour: 'flown', look: 'line', shown: true, show: toggle(this.trail.line) },
-      { name: 'heights', colour: 'muted', look: 'thin', shown: true, show: toggle(this.heights.group) },
+      { name: 'shadows and heights', colour: 'muted', look: 'thin', shown: true, show: toggle(this.heights.group) },
       ghost && { name: `other run: ${ghost.meta.run}`, colour: 'series-7', look: 'glass', shown: true, show: toggle(this.ghost.group, this.ghostTrail.line) },
     ];
     if (run.clearance) {
@@ -151,7 +155,7 @@ export class Scene {
     this.height = height;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
-    this.cameras.resize(width, height);
+    this.cameras.resize(width, height, this.panel.covered);
     // At once: a canvas of a new size is empty.
     this.draw();
   }

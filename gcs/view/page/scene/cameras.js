@@ -15,9 +15,10 @@ export class Cameras {
    * @param {HTMLElement} canvas
    * @param {{low: number[], high: number[]}} box of the flight, north-east-down (m)
    * @param {number} formation the size of the formation (m)
+   * @param {Vector3} aside the direction from which the formation is seen at first
    * @param {() => void} onChange
    */
-  constructor(canvas, box, formation, onChange) {
+  constructor(canvas, box, formation, aside, onChange) {
     const a = toScene(box.low);
     const b = toScene(box.high);
     this.corners = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => new Vector3(k & 1 ? a.x : b.x, k & 2 ? a.y : b.y, k & 4 ? a.z : b.z));
@@ -35,6 +36,9 @@ export class Cameras {
     this.pan.mouseButtons = { LEFT: MOUSE.PAN, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.PAN };
     this.pan.touches = { ONE: TOUCH.PAN, TWO: TOUCH.DOLLY_PAN };
     this.followed = new Vector3();
+    this.aside = aside;
+    /** What is not covered by the key: its share of the width. */
+    this.seen = 1;
     /** @type {Kind} */
     this.kind = 'free';
     this.isPlaced = false;
@@ -48,10 +52,15 @@ export class Cameras {
     return this.kind === 'top' ? this.above : this.perspective;
   }
 
-  /** @param {number} width @param {number} height CSS pixels */
-  resize(width, height) {
+  /**
+   * @param {number} width CSS pixels
+   * @param {number} height CSS pixels
+   * @param {number} covered CSS pixels at the right edge: the middle is that of what is left
+   */
+  resize(width, height, covered) {
+    this.seen = 1 - covered / width;
     this.perspective.aspect = width / height;
-    this.perspective.updateProjectionMatrix();
+    for (const camera of [this.perspective, this.above]) camera.setViewOffset(width, height, covered / 2, 0, width, height);
     this.frameAbove(width / height);
     if (!this.isPlaced) this.set(this.kind);
     this.isPlaced = true;
@@ -85,26 +94,25 @@ export class Cameras {
     let distance = 0;
     for (const corner of this.corners) {
       const from = corner.clone().sub(this.middle);
-      const aside = Math.max(Math.abs(from.dot(right)) / perspective.aspect, Math.abs(from.dot(up)));
+      const aside = Math.max(Math.abs(from.dot(right)) / (perspective.aspect * this.seen), Math.abs(from.dot(up)));
       distance = Math.max(distance, from.dot(back) + aside / slope);
     }
     perspective.position.copy(this.middle).addScaledVector(FROM, distance);
     this.orbit.update();
   }
 
-  /** Look at the formation, from the side from which the camera looks now. */
+  /** Look at the formation. */
   nearby() {
-    const from = this.isPlaced ? this.perspective.position.clone().sub(this.orbit.target).normalize() : FROM;
     this.orbit.target.copy(this.followed);
-    const distance = (1.6 * this.formation) / Math.min(1, this.perspective.aspect);
-    this.perspective.position.copy(this.followed).addScaledVector(from, distance);
+    const distance = (2.1 * this.formation) / Math.min(1, 1.2 * this.perspective.aspect * this.seen);
+    this.perspective.position.copy(this.followed).addScaledVector(this.aside, distance);
     this.orbit.update();
   }
 
   /** Go along with the payload. @param {Vector3} payload */
   follow(payload) {
     const middle = payload.clone();
-    middle.y += 0.35 * this.formation;
+    middle.y += 0.25 * this.formation;
     if (this.kind === 'follow') {
       this.perspective.position.add(middle).sub(this.followed);
       this.orbit.target.copy(middle);
@@ -117,13 +125,41 @@ export class Cameras {
   frameAbove(aspect) {
     const width = 1.1 * Math.abs(this.corners[0].x - this.corners[1].x);
     const depth = 1.1 * Math.abs(this.corners[0].z - this.corners[4].z);
-    const half = Math.max(depth, width / aspect) / 2 + 0.5;
+    const half = Math.max(depth, width / (aspect * this.seen)) / 2 + 0.5;
     Object.assign(this.above, { left: -half * aspect, right: half * aspect, top: half, bottom: -half });
     this.above.updateProjectionMatrix();
+  }
+
+  /** @param {number} factor below 1 brings nearer */
+  zoom(factor) {
+    if (this.kind === 'top') {
+      this.above.zoom /= factor;
+      this.above.updateProjectionMatrix();
+      this.pan.update();
+    } else {
+      const { target } = this.orbit;
+      this.perspective.position.sub(target).multiplyScalar(factor).add(target);
+      this.orbit.update();
+    }
   }
 
   dispose() {
     this.orbit.dispose();
     this.pan.dispose();
   }
+}
+
+/**
+ * The direction from which the line of the least clearance is seen at its length, from a little above.
+ * @param {import('../data.js').Run} run
+ */
+export function besideClearance({ clearance }) {
+  const from = FROM.clone().setY(0);
+  if (clearance && clearance.min > 0) {
+    const line = toScene(clearance.point_obstacle).sub(toScene(clearance.point_hull));
+    // One that is almost upright is seen from everywhere.
+    if (Math.hypot(line.x, line.z) > 0.2 * clearance.min) from.set(-line.z, 0, line.x);
+    if (from.z < 0) from.negate();
+  }
+  return from.normalize().setY(0.3).normalize();
 }

@@ -1,7 +1,7 @@
-/** What was on the ground station's map at a time: tracked obstacles, and boxes about what stands. */
+/** What was on the ground station's map at a time: known and tracked obstacles, and boxes about what stands. */
 
-import { EdgesGeometry, Group, LineSegments, Mesh, WireframeGeometry } from 'three';
-import { sizeToScene, toScene, yawToScene } from './frames.js';
+import { BufferGeometry, EdgesGeometry, Float32BufferAttribute, Group, LineSegments, Mesh } from 'three';
+import { attitudeToScene, sizeToScene, toScene, yawToScene } from './frames.js';
 import { shapeGeometry } from './shapes.js';
 
 const RECENT = 0.3; // s after which a track has ended
@@ -15,10 +15,16 @@ export class Detected {
     this.group = new Group();
     const wire = palette.hairline('detected-wire');
     const skin = palette.translucent('detected-wire', 0.12);
+    const known = run.obstacles.filter((/** @type {any} */ obstacle) => obstacle.known);
+    this.known = known.map((/** @type {any} */ obstacle) => {
+      const mesh = new LineSegments(frame(obstacle), wire);
+      attitudeToScene(obstacle.quaternion, mesh.quaternion);
+      if (obstacle.position) toScene(obstacle.position, mesh.position);
+      this.group.add(mesh);
+      return { mesh, channel: obstacle.channel ? run.channel(obstacle.channel) : null };
+    });
     this.tracks = run.tracks.map((/** @type {any} */ track) => {
-      const geometry = shapeGeometry(track, true);
-      const frame = track.kind === 'sphere' || track.kind === 'pole' ? new WireframeGeometry(geometry) : new EdgesGeometry(geometry);
-      const mesh = new LineSegments(frame, wire);
+      const mesh = new LineSegments(frame(track), wire);
       mesh.quaternion.copy(yawToScene(track.yaw));
       mesh.visible = false;
       this.group.add(mesh);
@@ -35,6 +41,7 @@ export class Detected {
   /** @param {number} time */
   update(time) {
     if (!this.group.visible) return;
+    for (const { mesh, channel } of this.known) if (channel) toScene(channel.at(time), mesh.position);
     for (const { mesh, channel } of this.tracks) {
       mesh.visible = channel !== null && isTracked(channel, time);
       if (mesh.visible) toScene(channel.at(time), mesh.position);
@@ -61,8 +68,45 @@ export class Detected {
   }
 
   get isEmpty() {
-    return this.tracks.length === 0 && this.standing.length === 0;
+    return this.known.length === 0 && this.tracks.length === 0 && this.standing.length === 0;
   }
+}
+
+const AROUND = 24; // segments of a circle
+const GROWN = 1.02; // so that the lines lie off the surface of the obstacle itself
+
+/**
+ * The lines of a shape: its edges; of a sphere circles about its axes; of a pole circles and lines along it.
+ * @param {any} shape
+ */
+function frame(shape) {
+  const { kind, radius, size } = shape;
+  if (kind !== 'sphere' && kind !== 'pole') return new EdgesGeometry(shapeGeometry(shape), 25).scale(GROWN, GROWN, GROWN);
+  /** @type {number[]} */
+  const ends = [];
+  const circle = (/** @type {(c: number, s: number) => number[]} */ at) => {
+    for (let k = 0; k < AROUND; k += 1) {
+      for (const step of [k, k + 1]) {
+        const angle = (2 * Math.PI * step) / AROUND;
+        ends.push(...at(Math.cos(angle) * radius, Math.sin(angle) * radius));
+      }
+    }
+  };
+  if (kind === 'sphere') {
+    circle((c, s) => [c, 0, s]);
+    for (const turn of [0, 0.25, 0.5, 0.75]) {
+      const [x, z] = [Math.cos(turn * Math.PI), Math.sin(turn * Math.PI)];
+      circle((c, s) => [c * x, s, c * z]);
+    }
+  } else {
+    const half = size[2] / 2;
+    for (const share of [-1, -0.5, 0, 0.5, 1]) circle((c, s) => [c, share * half, s]);
+    for (let k = 0; k < 6; k += 1) {
+      const [x, z] = [Math.cos((k * Math.PI) / 3) * radius, Math.sin((k * Math.PI) / 3) * radius];
+      ends.push(x, -half, z, x, half, z);
+    }
+  }
+  return new BufferGeometry().setAttribute('position', new Float32BufferAttribute(ends, 3)).scale(GROWN, GROWN, GROWN);
 }
 
 /** @param {import('../data.js').Channel} channel @param {number} time */

@@ -8,7 +8,7 @@ export class Estimate {
   constructor(run, palette) {
     this.position = run.meta.source === 'estimate' ? null : run.channel('estimate.payload.position');
     this.attitude = run.channel('estimate.payload.attitude');
-    this.mesh = payload(run, palette.translucent('estimate', 0.3), palette.hairline('estimate'));
+    this.mesh = payload(run, palette.translucent('estimate', 0.2), palette.hairline('estimate'));
     this.mesh.visible = this.position !== null;
   }
 

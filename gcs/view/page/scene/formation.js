@@ -8,7 +8,7 @@ import { ConvexGeometry } from 'three/addons/geometries/ConvexGeometry.js';
 import { attitudeToScene, toScene } from './frames.js';
 
 const LINK_RADIUS = 0.03; // m, wider than it is, to be seen from afar
-const RIM = 16; // points on the rim of a disc for the hull
+const RIM = 32; // points on the rim of a disc for the hull
 
 /** @typedef {import('../data.js').Run} Run */
 /** @typedef {import('./palette.js').Palette} Palette */
@@ -18,8 +18,9 @@ export class Formation {
    * @param {Run} run
    * @param {Palette} palette
    * @param {'flown'|'ghost'} look as it was, or as what it is compared with
+   * @param {import('./labels.js').Labels} [labels] for the numbers of the UAVs
    */
-  constructor(run, palette, look) {
+  constructor(run, palette, look, labels) {
     this.run = run;
     this.palette = palette;
     this.group = new Group();
@@ -42,6 +43,8 @@ export class Formation {
     for (let i = 1; run.has(`truth.uav${i}.position`); i += 1) {
       const mesh = uav(radius, looks);
       this.group.add(mesh);
+      // It goes where the UAV goes.
+      if (labels) labels.add(`${i}`, 'vehicle').position = mesh.position;
       this.uavs.push({ mesh, position: run.channel(`truth.uav${i}.position`), attitude: run.channel(`truth.uav${i}.attitude`) });
     }
     const rod = new CylinderGeometry(LINK_RADIUS, LINK_RADIUS, 1, 8);
@@ -95,7 +98,7 @@ export class Formation {
     this.skin.geometry.dispose();
     this.edges.geometry.dispose();
     this.skin.geometry = new ConvexGeometry(points);
-    this.edges.geometry = new EdgesGeometry(this.skin.geometry, 12);
+    this.edges.geometry = new EdgesGeometry(this.skin.geometry, 15);
   }
 }
 
@@ -106,7 +109,7 @@ function placed(point, body) {
   return point.clone().applyQuaternion(body.quaternion).add(body.position);
 }
 
-/** The hull of the payload, with its edges and a mark at its front. @param {Run} run @param {any} surface @param {any} edge */
+/** The hull of the payload, with its edges. @param {Run} run @param {any} surface @param {any} edge */
 export function payload(run, surface, edge) {
   const corners = (run.meta.hull ?? []).map((/** @type {number[]} */ corner) => toScene(corner));
   const geometry = corners.length >= 4 ? new ConvexGeometry(corners) : new BoxGeometry(1, 0.5, 1);

@@ -63,6 +63,6 @@ export class Heights {
     const { x, y, z } = this.formation.payload.position;
     this.label.position.set(x, y / 2, z);
     this.label.say(`${y.toFixed(1)} m up`);
-    this.label.visible = y > 1;
+    this.label.visible = y > 1 && this.group.visible;
   }
 }

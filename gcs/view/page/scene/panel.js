@@ -17,15 +17,17 @@ export class Panel {
    * @param {Part[]} parts
    * @param {Scale[]} scales
    * @param {import('./palette.js').Palette} palette
-   * @param {(kind: 'free'|'follow'|'top') => void} onCamera
+   * @param {{choose(kind: 'free'|'follow'|'top'): void, zoom(factor: number): void, cover(): void}} on what is called
+   *   when a camera is chosen, is to go nearer or farther, and when the key is opened or closed
    */
-  constructor(parent, parts, scales, palette, onCamera) {
-    this.onCamera = onCamera;
+  constructor(parent, parts, scales, palette, on) {
     const views = /** @type {const} */ ([['free', 'overview'], ['follow', 'follow'], ['top', 'top']]);
     this.buttons = views.map(([kind, name]) =>
-      h('button', { type: 'button', 'aria-pressed': 'false', 'data-camera': kind, onclick: () => onCamera(kind) }, name));
-    this.cameras = h('div.scene-cameras', { role: 'group', 'aria-label': 'camera' }, ...this.buttons);
-    this.key = h('details.scene-key', { open: parent.clientWidth >= NARROW },
+      h('button', { type: 'button', 'aria-pressed': 'false', 'data-camera': kind, onclick: () => on.choose(kind) }, name));
+    const zoom = (/** @type {string} */ face, /** @type {string} */ title, /** @type {number} */ factor) =>
+      h('button', { type: 'button', title, 'aria-label': title, onclick: () => on.zoom(factor) }, face);
+    this.cameras = h('div.scene-cameras', { role: 'group', 'aria-label': 'camera' }, ...this.buttons, zoom('+', 'nearer', 0.8), zoom('−', 'farther', 1.25));
+    this.key = h('details.scene-key', { open: parent.clientWidth >= NARROW, ontoggle: () => on.cover() },
       h('summary', {}, 'Key'),
       h('div', {}, ...parts.map(row), ...scales.map((scale) => legend(scale, palette))));
     parent.append(this.cameras, this.key);
@@ -34,6 +36,13 @@ export class Panel {
   /** @param {'free'|'follow'|'top'} kind */
   choose(kind) {
     for (const button of this.buttons) button.setAttribute('aria-pressed', String(button.dataset.camera === kind));
+  }
+
+  /** The width that the open key covers at the right edge (CSS pixels). */
+  get covered() {
+    const parent = this.key.parentElement;
+    const open = this.key.open && parent !== null && parent.clientWidth >= NARROW;
+    return open ? this.key.offsetWidth : 0;
   }
 
   dispose() {

@@ -6,11 +6,10 @@ import { toScene } from './frames.js';
 
 /**
  * @param {{kind: string, radius: number, size: number[], corners?: number[][], rounding?: number}} shape
- * @param {boolean} coarse for a wireframe
  */
-export function shapeGeometry(shape, coarse = false) {
-  if (shape.kind === 'sphere') return new SphereGeometry(shape.radius, coarse ? 12 : 32, coarse ? 8 : 20);
-  if (shape.kind === 'pole') return new CylinderGeometry(shape.radius, shape.radius, shape.size[2], coarse ? 12 : 32, 1);
+export function shapeGeometry(shape) {
+  if (shape.kind === 'sphere') return new SphereGeometry(shape.radius, 32, 20);
+  if (shape.kind === 'pole') return new CylinderGeometry(shape.radius, shape.radius, shape.size[2], 32, 1);
   return new ConvexGeometry(rounded(shape.corners ?? boxCorners(shape.size), shape.rounding ?? 0));
 }
 
