@@ -1,4 +1,4 @@
-/* sources sha256 c914217c1d2ed27b97c0375c2afd3ba7b73433c31ee9c317a1e2386b1751c09b
+/* sources sha256 bae2f0a21d323bcc8a7642e924037836ff03395c8156057a3941b37c9b777d08
 
 three 0.170.0
 The MIT License
@@ -45,6 +45,4199 @@ AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER
 LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM,
 OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN
 THE SOFTWARE.*/
-function g(e,t={},...l){let[n,...s]=e.split("."),i=document.createElement(n);s.length&&(i.className=s.join(" "));for(let[r,u]of Object.entries(t))r.startsWith("on")?i.addEventListener(r.slice(2),u):r.includes("-")?i.setAttribute(r,u):r==="style"?Object.assign(i.style,u):i[r]=u;return i.append(...l.filter(r=>r!=null&&r!==!1)),i}function et(e){return getComputedStyle(document.documentElement).getPropertyValue(`--${e}`).trim()}function le(e,t=2){return e==null||!Number.isFinite(e)?"not known":e.toFixed(t)}function ml(e,t){let l=g("button",{type:"button",title:e},t);return l.addEventListener("click",async()=>{try{await navigator.clipboard.writeText(e)}catch{let n=g("textarea",{value:e});document.body.append(n),n.select(),document.execCommand("copy"),n.remove()}l.textContent="copied",setTimeout(()=>{l.textContent=t},1500)}),l}var bo=["collided","lost","failed","aborted","interrupted","completed"],yo=[["clearance_min_m","Least clearance","m",2],["uav_separation_min_m","Distance between UAVs","m",2],["tilt_max_deg","Largest payload angle","°",1],["position_rmse_m","Position error, RMS","m",3],["delay_s","Delay","s",1],["detected_s","Time to the first alarm","s",2],["touchdown_mps","Touchdown speed","m/s",2]],ls=24,ln=e=>e.passed==="True",mt=(e,t)=>e[t]===void 0||e[t]===""?NaN:Number(e[t]);function vo({name:e,flights:t}){let l=t.filter(ln).length,n=l===t.length?"good":"bad",s=g("div.scroll.tall",{}),i=g("p.hint",{}),r=(d,w)=>{s.replaceChildren(Kr(d));let y=d.length===t.length;i.replaceChildren(`${d.length} flights${w?`, ${w}`:""}, the worst first. `),y||i.append(g("button",{type:"button",onclick:()=>r(t,"")},"show all"))};r(t,"");let u=new Set(t.map(d=>d.level)),h=t.some(d=>d.fault)&&u.size>0;return[g("header",{},g("h1",{},e,g(`span.badge.${n}`,{},`${n==="good"?"✓":"✗"} ${l} of ${t.length} passed`))),g("section",{},g("h2",{},h?"Faults and severities":"Kinds"),h?Br(t,r):Ur(t,r)),g("section",{},g("h2",{},"Distributions"),g("p.hint",{},g("span.swatch.passed",{})," passed  ",g("span.swatch.not",{})," not passed"),g("div.histograms",{},...yo.map(d=>Yr(t,...d)))),g("section",{id:"flights"},g("h2",{},"Flights"),i,s)]}function _o(e,t,l,n){let s=e.filter(ln).length,i=s===e.length?"good":s===0?"bad":"mixed",r=So(e)[0],u=r.outcome==="completed"?"":`worst: ${r.outcome}`;return g("td",{},g(`button.cell.${i}`,{type:"button",onclick:()=>{l(e,n),document.getElementById("flights").scrollIntoView()}},t?g("span",{},t):null,g("strong",{},`${s} of ${e.length}`),u?g("span",{},u):null))}function Br(e,t){let l=[...new Set(e.map(r=>r.fault))],n=Math.max(...e.map(r=>Number(r.level))),s=l.map(r=>{let u=e.filter(d=>d.fault===r),h=Array.from({length:n},(d,w)=>{let y=u.filter(p=>Number(p.level)===w+1);return y.length?_o(y,y[0].severity,t,`${r}, ${y[0].severity}`):g("td",{})});return g("tr",{},g("th",{scope:"row"},r),...h)}),i=Array.from({length:n},(r,u)=>g("th",{},`severity ${u+1}`));return g("div.scroll.tall",{},g("table.matrix",{},g("thead",{},g("tr",{},g("th",{},"fault"),...i)),g("tbody",{},...s)))}function Ur(e,t){let n=[...new Set(e.map(s=>[s.variant,s.kind].filter(Boolean).join(", ")))].map(s=>{let i=e.filter(h=>[h.variant,h.kind].filter(Boolean).join(", ")===s),r=i.filter(h=>mt(h,"contacts")>0).length,u=i.map(h=>mt(h,"clearance_min_m")).filter(Number.isFinite);return g("tr",{},g("th",{scope:"row"},s||"all"),_o(i,"",t,s),g("td.number",{},`${r} with contacts`),g("td.number",{},u.length?`least clearance ${le(Math.min(...u))} m`:""))});return g("div.scroll.tall",{},g("table.matrix",{},g("tbody",{},...n)))}function So(e){let t=l=>Number.isFinite(l)?l:1/0;return[...e].sort((l,n)=>Number(ln(l))-Number(ln(n))||bo.indexOf(l.outcome)-bo.indexOf(n.outcome)||t(mt(l,"clearance_min_m"))-t(mt(n,"clearance_min_m"))||t(-mt(l,"tilt_max_deg"))-t(-mt(n,"tilt_max_deg")))}function Kr(e){let t=yo.filter(([s])=>e.some(i=>Number.isFinite(mt(i,s)))).slice(0,5),l=So(e).map(s=>{let i=s.page?g("a",{href:s.page},s.name):s.name,r=[s.failures,s.reason].filter(Boolean).join(": ");return g("tr",{},g("td",{},i),g(`td.${ln(s)?"held":"missed"}`,{},ln(s)?"✓ passed":"✗ not passed"),g("td",{},s.outcome),...t.map(([u,,,h])=>g("td.number",{},Number.isFinite(mt(s,u))?le(mt(s,u),h):"–")),g("td.text",{},r),g("td",{},s.replay?ml(s.replay,"copy command"):""))}),n=["flight","","outcome",...t.map(([,s,i])=>`${s} (${i})`),"why not","again"];return g("table.flights",{},g("thead",{},g("tr",{},...n.map(s=>g("th",{},s)))),g("tbody",{},...l))}function Yr(e,t,l,n,s){let i=e.filter(k=>Number.isFinite(mt(k,t)));if(i.length<2)return null;let r=i.map(k=>mt(k,t)).sort((k,_)=>k-_),[u,h]=[r[0],r[r.length-1]],d=h-u||1,w=Array.from({length:ls},()=>[0,0]);for(let k of i){let _=Math.min(Math.floor((mt(k,t)-u)/d*ls),ls-1);w[_][ln(k)?1:0]+=1}let y=Math.max(...w.map(([k,_])=>k+_)),p=w.map(([k,_])=>g("span.bar",{title:`${_} passed, ${k} not`},g("span.bar-good",{style:{height:`${100*_/y}%`}}),g("span.bar-bad",{style:{height:`${100*k/y}%`}}))),x=r[Math.floor(r.length/2)];return g("figure.histogram",{},g("figcaption",{},`${l} (${n})`),g("div.bars",{},...p),g("div.range",{},g("span",{},le(u,s)),g("span",{},`median ${le(x,s)}`),g("span",{},le(h,s))))}var ss=[.1,.25,.5,1,2,4,8,16],gl=class{constructor(t,l){this.begin=t,this.end=l,this.time=t,this.speed=1,this.playing=!1,this.listeners=[],this.shown=0}onChange(t){this.listeners.push(t),t(this)}set(t){this.time=Math.min(Math.max(t,this.begin),this.end),this.changed()}play(){this.playing||(this.time>=this.end&&(this.time=this.begin),this.playing=!0,this.shown=performance.now(),this.changed(),requestAnimationFrame(t=>this.frame(t)))}pause(){this.playing=!1,this.changed()}toggle(){this.playing?this.pause():this.play()}changeSpeed(t){let l=ss.indexOf(this.speed)+t;this.speed=ss[Math.min(Math.max(l,0),ss.length-1)],this.changed()}frame(t){if(!this.playing)return;let l=Math.max(0,t-this.shown)/1e3;this.shown=t,this.time=Math.min(this.time+l*this.speed,this.end),this.time>=this.end&&(this.playing=!1),this.changed(),requestAnimationFrame(n=>this.frame(n))}changed(){for(let t of this.listeners)t(this)}};var os=class{constructor(t,l,n,s,i,r){this.name=t,this.t=l,this.columns=n,this.unit=s,this.shape=i,this.series=r,this.isQuaternion=n.join("")==="wxyz",this.last=0}rowAt(t){let{t:l}=this,n=this.last<l.length&&l[this.last]<=t?this.last:0;for(let s=0;s<8&&n+1<l.length&&l[n+1]<=t;s+=1)n+=1;if(n+1<l.length&&l[n+1]<=t){let s=l.length;for(;s-n>1;){let i=n+s>>1;l[i]<=t?n=i:s=i}}return this.last=n,n}row(t){return this.series.map(l=>l[t])}path(t){let l=this.row(this.rowAt(t)),n=[];for(let s=0;s+2<l.length;s+=3)Number.isFinite(l[s])&&n.push(l.slice(s,s+3));return n}at(t){let l=this.rowAt(t),{t:n}=this;if(l+1>=n.length||t<=n[l])return this.row(l);let s=(t-n[l])/(n[l+1]-n[l]),i=this.row(l),r=this.row(l+1);return this.isQuaternion?qr(i,r,s):i.map((u,h)=>Number.isNaN(r[h])?u:u+s*(r[h]-u))}};function qr(e,t,l){let n=e[0]*t[0]+e[1]*t[1]+e[2]*t[2]+e[3]*t[3],s=n<0?-1:1;n=Math.min(Math.abs(n),1);let i=Math.acos(n),r=1-l,u=l;i>.001&&(r=Math.sin((1-l)*i)/Math.sin(i),u=Math.sin(l*i)/Math.sin(i));let h=e.map((w,y)=>r*w+s*u*t[y]),d=Math.hypot(...h);return h.map(w=>w/d)}function xo([e,t,l,n]){let s=180/Math.PI,i=Math.max(-1,Math.min(1,2*(e*l-n*t)));return[Math.atan2(2*(e*t+l*n),1-2*(t*t+l*l))*s,Math.asin(i)*s,Math.atan2(2*(e*n+t*l),1-2*(l*l+n*n))*s]}var is=class{constructor(t,l){this.header=t,this.meta=t.meta,this.events=t.events,this.obstacles=t.obstacles,this.tracks=t.tracks,this.standing=t.standing,this.clearance=t.clearance,this.blob=l,this.channels=new Map,this.times=new Map}has(t){return t in this.header.channels}names(t){return Object.keys(this.header.channels).filter(l=>l.startsWith(t))}channel(t){let l=this.header.channels[t];if(!l)return null;let n=this.channels.get(t);if(!n){let s=Jr(this.blob,l.values);n=new os(t,this.time(l.t),l.columns,l.unit,l.values.shape,s),this.channels.set(t,n)}return n}flown(t){return this.channel(`${this.meta.source}.payload.${t}`)}time(t){let l=this.times.get(t.offset);return l||(l=jr(this.blob,t),this.times.set(t.offset,l)),l}};function jr(e,t){let l=new Int32Array(e,t.offset,t.shape[0]),n=new Float64Array(l.length),s=t.first;for(let i=0;i<l.length;i+=1)s+=l[i],n[i]=s/1e6;return n}function Jr(e,t){let l=t.shape[0],n=t.shape.slice(1).reduce((i,r)=>i*r,1),s=[];for(let i=0;i<n;i+=1){if(t.dtype==="float32"){s.push(new Float32Array(e,t.offset+4*l*i,l));continue}let r=new Uint16Array(e,t.offset+2*l*i,l),u=new Float32Array(l),h=0;for(let d=0;d<l;d+=1)h=h+r[d]&65535,u[d]=h===65535?NaN:t.first[i]+t.scale[i]*h;s.push(u)}return s}async function Zr(e){let t=Uint8Array.from(atob(e.trim()),n=>n.charCodeAt(0)),l=new Blob([t]).stream().pipeThrough(new DecompressionStream("deflate"));return new Response(l).arrayBuffer()}async function ko(e){let t=[...e.querySelectorAll("script.run-header")],l=[...e.querySelectorAll("script.run-blob")];return Promise.all(t.map(async(n,s)=>{let i=await Zr(l[s].textContent??"");return l[s].textContent="",new is(JSON.parse(n.textContent??""),i)}))}var Qr={phase:"phase",mode:"mode",fault:"fault",alarm:"alarm",isolation:"isolated",waypoint:"waypoint"};function Mo(e,t){let l=e.events.map(i=>({row:g(`tr.event.${i.kind}`,{onclick:()=>t.set(i.start)},g("td.number",{},g("button.link",{type:"button"},`${i.start.toFixed(2)} s`)),g("td",{},g(`span.tag.${i.kind}`,{},Qr[i.kind]??i.kind)),g("td",{},i.source),g("td.text",{},i.text+(i.end!==null&&i.kind==="fault"?`, to ${i.end.toFixed(2)} s`:""))),event:i})),n=-1;t.onChange(()=>{let i=-1;for(;i+1<l.length&&l[i+1].event.start<=t.time+1e-6;)i+=1;i!==n&&(l[n]?.row.classList.remove("current"),l[i]?.row.classList.add("current"),n=i)});let s=["time","kind","source","event"].map(i=>g("th",{},i));return g("section",{id:"events"},g("h2",{},"Events"),l.length?g("div.scroll",{},g("table",{},g("thead",{},g("tr",{},...s)),g("tbody",{},...l.map(({row:i})=>i)))):g("p",{},"None is on record."))}var Xr=.1,Lu=180/Math.PI;function rs(e,t,l){let n=new Array(l.length).fill(null);if(e.length===0)return n;let s=0;for(let i=0;i<l.length;i+=1){let r=l[i];if(r<e[0]-1e-6||r>e[e.length-1]+1e-6)continue;for(;s+1<e.length&&e[s+1]<=r;)s+=1;let u=t[s];if(s+1<e.length&&r>e[s]){if(e[s+1]-e[s]>1)continue;u+=(r-e[s])/(e[s+1]-e[s])*(t[s+1]-t[s])}Number.isFinite(u)&&(n[i]=u)}return n}function _e(e,t){return e.series.map(l=>rs(e.t,l,t))}function jn(e,t){return e[0].map((l,n)=>{let s=0;for(let i=0;i<3;i+=1){if(e[i][n]===null||t[i][n]===null)return null;s+=(e[i][n]-t[i][n])**2}return Math.sqrt(s)})}function as(e){let t=[0,1,2].map(()=>new Float32Array(e.t.length));for(let l=0;l<e.t.length;l+=1){let n=xo(e.row(l));for(let s=0;s<3;s+=1)t[s][l]=n[s]}return t}function wl(e){let t=e.flown("position"),l=e.channel("reference.position");if(!t||!l)return null;let n=e.channel("plan.position"),{t:s}=t,[i,r]=[_e(t,s),_e(l,s)],u=n?_e(n,s):r,h=jn(u,r),d=jn(i,u),w=jn(i,r),y=p=>p.reduce((x,k)=>k!==null&&k>(x??-1)?k:x,null);return{t:s,error:d,deviation:w,avoiding:n?bl(s,h.map(p=>p!==null&&p>Xr)):[],errorMax:y(d),deviationMax:y(n?w.map((p,x)=>d[x]===null?null:p):w)}}function Ao(e){let[t,l]=[0,0];for(let n of e)n!==null&&(t+=n*n,l+=1);return l?Math.sqrt(t/l):null}function bl(e,t){let l=[];for(let n=0;n<e.length;n+=1){if(!t[n])continue;let s=e[n];for(;n+1<e.length&&t[n+1];)n+=1;l.push([s,e[Math.min(n+1,e.length-1)]])}return l}function cs(e,t){let l=t.source.split(", "),n=(t.end??e.meta.end)+5;return e.events.filter(s=>(s.kind==="alarm"||s.kind==="isolation")&&s.start>=t.start&&s.start<=n&&(l.includes(s.source)||t.source==="all vehicles"||s.source==="team"))}var ea={completed:"Every waypoint and the landing were reached, and the payload was set down.",interrupted:"The user ended the flight; the payload was set down.",aborted:"A failsafe ended the flight early, and the payload was set down.",failed:"A waypoint or the landing was missed, or the payload was not set down safely.",lost:"The records end without the vehicles being known to be on the ground.",collided:"Something touched: a vehicle or the payload came into contact.","cut off":"The records end before the flight does."},To={position_rmse:["position error, root mean square","m","≤",3],payload_tilt_deg:["largest payload angle","°","≤",1],clearance:["clearance to obstacles and fence","m","≥",2],uav_separation:["distance between two UAVs","m","≥",2],touchdown_speed:["touchdown speed","m/s","≤",2],arrival:["distance from waypoints and landing place","m","≤",2]};function Eo(e){let{outcome:t,summary:l}=e.meta;if(["failed","lost","collided"].includes(t))return"bad";let n=Object.values(l.limits??{}).every(s=>s.held);return t==="completed"&&n?"good":"warning"}function $o(e){let{meta:t}=e,n=[t.outcome==="aborted"&&!t.summary.duration_s?"The flight was refused before take-off.":ea[t.outcome]??""];t.reason&&n.push(`Reason: ${t.reason}.`);let s=t.summary.duration_s,i=`${t.vehicles} vehicles carried the payload`;return s&&n.push(`${i} for ${le(s,0)} s${t.seed===null?"":` (seed ${t.seed})`}.`),t.source==="estimate"&&n.push("No truth is on record: all that is shown is the estimate of the ground, which can be wrong."),n}function Lo(e){let{summary:t,margin:l}=e.meta,n=[],s=t.contacts;s!=null&&n.push(s===0?"Nothing touched.":`There were ${s} contacts.`);let i=e.clearance;if(i){let u=t.limits?.clearance,h=u?u.limit:l,d=i.min-h,w=u?`the limit of ${le(h)} m`:`the margin of ${le(h)} m that plans keep`,y=`“${i.obstacle}”, at ${le(i.time,1)} s`;if(i.min<=1e-6)n.push(`The formation met ${y}.`);else{let p=`${le(Math.abs(d))} m ${d>=0?"more":"LESS"} than ${w}`;n.push(`The formation's hull kept at least ${le(i.min)} m from ${y}: ${p}.`)}}else e.meta.source==="truth"&&n.push("There was no obstacle or fence to keep clear of.");Number.isFinite(t.uav_separation_min_m)&&t.uav_separation_min_m!==null&&n.push(`Two UAVs came as near as ${le(t.uav_separation_min_m)} m, between their centres.`);let r=t.safety;if(r&&r.steps){let u=100*r.verified_steps/r.steps,h=r.verified_steps===r.steps?"100":le(Math.min(u,99.9),1);n.push(`${h} % of the plans were verified to keep the margin of ${le(l)} m by exact distances${r.unverified_reason?`; the worst other did not: ${r.unverified_reason}`:""}.`);for(let[d,w]of Object.entries(r.exceeded??{})){let y=d.replaceAll("_"," ");n.push(`The guarantee did not hold: ${y} was ${le(w.value,3)} m (limit ${le(w.limit,3)} m).`)}}return n}function Do(e){let t=[],l=wl(e);if(!l)return["No reference is on record."];let n=l.avoiding.length>0,s=l.t,i=l.deviation.filter((r,u)=>l.error[u]!==null&&!l.avoiding.some(([h,d])=>s[u]>=h&&s[u]<=d));if(e.has("plan.position")){let r=e.meta.summary.safety?.payload_tracking_max_m??l.errorMax;t.push(`Error: the payload kept within ${le(r,3)} m of its plan.`)}if(n){let r=l.avoiding.reduce((h,[d,w])=>h+w-d,0);t.push(`Wanted: for ${le(r,0)} s the plan left the mission's reference, to avoid obstacles or to wait for what comes, by up to ${le(l.deviationMax)} m.`);let u=Ao(i);u!==null&&t.push(`Otherwise the payload was ${le(u,3)} m (RMS) from the reference.`)}else l.deviationMax!==null&&t.push(`The plan stayed on the mission's reference; the payload was at most ${le(l.deviationMax,3)} m from it.`);return t}function Po(e){let t=new Map;for(let l of e.events)l.kind==="mode"&&t.set(l.text,[...t.get(l.text)??[],l]);return[...t].map(([l,n])=>{let s=[...new Set(n.map(({source:r})=>r.replace("vehicle ","")))];return{text:`${s.length>1?`Vehicles ${s.slice(0,-1).join(", ")} and ${s.at(-1)} flew by themselves`:`Vehicle ${s[0]} flew by itself`} from ${le(n[0].start,1)} s: ${l}.`,event:n[0]}})}function Co(e){let t=e.events.filter(n=>n.kind==="fault").map(n=>{let s=cs(e,n),[i]=s.filter(d=>d.kind==="alarm"),r=s.filter(d=>d.kind==="isolation"),u=`${le(n.start,1)} s to ${n.end===null?"the end":`${le(n.end,1)} s`}`,h=`${n.source}, ${n.text}, ${u}: `;h+=i?`first alarm ${le(i.start-n.start)} s later (${i.text}, ${i.source})`:"no alarm";for(let d of r)h+=`; ${d.text} of ${d.source} isolated after ${le(d.start-n.start)} s`;return{text:`${h}.`,event:n}}),l=new Set(e.events.filter(n=>n.kind==="fault").flatMap(n=>cs(e,n)));for(let n of e.events)if(n.kind==="isolation"&&!l.has(n)){let s=n.end===null?"to the end":`until ${le(n.end,1)} s`,i=`${n.text} of ${n.source} was isolated from ${le(n.start,1)} s ${s}, without a fault.`;t.push({text:i,event:n})}return t}var ta={good:"✓",warning:"!",bad:"✗"};function No(e){let{meta:t}=e,l=Eo(e),n=t.outcome==="completed"&&l!=="good"?", outside its limits":"";return g("h1",{},t.mission,g("span.seed",{},t.seed===null?"":` seed ${t.seed}`),g(`span.badge.${l}`,{},`${ta[l]} ${t.outcome}${n}`))}function Fo(e,t){return g("div.cards",{tabIndex:0,role:"region","aria-label":"what happened"},Jn("What happened",$o(e)),Jn("Was it safe?",Lo(e),e.clearance&&zo(t,e.clearance.time,"show the least clearance")),na(e,t),Jn("Position: error and avoidance",Do(e)),la(e),sa(e.meta.command))}function Jn(e,t,...l){return g("section.card",{},g("h2",{},e),...t.map(n=>g("p",{},n)),...l)}function zo(e,t,l){return g("button.link",{type:"button",onclick:()=>e.set(t)},l)}function na(e,t){let l=[...Co(e),...Po(e)],n=e.events.filter(r=>r.kind==="alarm").length,s=n?`${n} alarms are in the list of events.`:"No alarm was raised.";if(!l.length)return Jn("Faults and refused sensors",["No fault was injected and no channel isolated.",s]);let i=l.map(({text:r,event:u})=>g("li",{},`${r} `,zo(t,u.start,"show")));return g("section.card",{},g("h2",{},"Faults and refused sensors"),g("ul",{},...i),g("p",{},s))}function la(e){let t=Object.entries(e.meta.summary.limits??{});if(!t.length)return Jn("Limits",["The mission has no limits on record."]);let l=t.map(([n,{value:s,limit:i,held:r}])=>{let[u,h,d,w]=To[n]??[n.replaceAll("_"," "),"","",3],y=s===null?"none":`${le(s,w)} ${h}`;return g("tr",{},g("td",{},u),g("td.number",{},y),g("td.number",{},`${d} ${i} ${h}`),g(`td.${r?"held":"missed"}`,{},r?"✓ held":"✗ NOT held"))});return g("section.card",{},g("h2",{},"Limits"),g("table",{},g("tbody",{},...l)))}function sa(e){if(!e)return null;let t=ml(e,"copy");return g("section.card",{},g("h2",{},"Fly it again"),g("div.command",{},g("code",{},e),t))}function Ro(e,t){if(!t)return null;let[l,n]=[e.meta.summary,t.meta.summary],s=[["position error, RMS (m)",l.position_rmse_m?.total,n.position_rmse_m?.total,3],["least clearance (m)",l.clearance_min_m,n.clearance_min_m,3],["UAV separation (m)",l.uav_separation_min_m,n.uav_separation_min_m,3],["largest roll (°)",l.payload_tilt_max_deg?.roll,n.payload_tilt_max_deg?.roll,2],["largest pitch (°)",l.payload_tilt_max_deg?.pitch,n.payload_tilt_max_deg?.pitch,2],["duration (s)",l.duration_s,n.duration_s,1],["contacts",l.contacts,n.contacts,0],["alarms",l.alarms,n.alarms,0],["control step, median (ms)",l.step_time_ms?.p50,n.step_time_ms?.p50,1]],i=d=>d!=null,r=s.map(([d,w,y,p])=>g("tr",{},g("td",{},d),g("td.number",{},i(w)?le(w,p):"–"),g("td.number",{},i(y)?le(y,p):"–"),g("td.number",{},i(w)&&i(y)?(y-w>0?"+":"")+le(y-w,p):"–"))),u=["",`A: ${e.meta.run}`,`B: ${t.meta.run}`,"B − A"].map(d=>g("th",{},d)),h=g("tr",{},g("td",{},"outcome"),g("td.number",{},e.meta.outcome),g("td.number",{},t.meta.outcome),g("td",{}));return g("section.card",{},g("h2",{},"Two runs"),g("p",{},"A is what the page is about; B is its ghost in the scene and the dashed curves of the plots."),g("div.scroll.flat",{},g("table",{},g("thead",{},g("tr",{},...u)),g("tbody",{},h,...r))))}var Pe="u-",oa="uplot",ia=Pe+"hz",ra=Pe+"vt",aa=Pe+"title",ca=Pe+"wrap",ua=Pe+"under",fa=Pe+"over",ha=Pe+"axis",rn=Pe+"off",da=Pe+"select",pa=Pe+"cursor-x",ma=Pe+"cursor-y",ga=Pe+"cursor-pt",wa=Pe+"legend",ba=Pe+"live",ya=Pe+"inline",va=Pe+"series",_a=Pe+"marker",Vo=Pe+"label",Sa=Pe+"value",Xn="width",el="height",Zn="top",Oo="bottom",$n="left",us="right",As="#000",Io=As+"0",Ho="mousemove",Wo="mousedown",fs="mouseup",Go="mouseenter",Bo="mouseleave",Uo="dblclick",xa="resize",ka="scroll",Ko="change",xl="dppxchange",Ts="--",Rn=typeof window<"u",gs=Rn?document:null,Dn=Rn?window:null,Ma=Rn?navigator:null,ae,yl;function ws(){let e=devicePixelRatio;ae!=e&&(ae=e,yl&&ys(Ko,yl,ws),yl=matchMedia(`(min-resolution: ${ae-.001}dppx) and (max-resolution: ${ae+.001}dppx)`),an(Ko,yl,ws),Dn.dispatchEvent(new CustomEvent(xl)))}function lt(e,t){if(t!=null){let l=e.classList;!l.contains(t)&&l.add(t)}}function bs(e,t){let l=e.classList;l.contains(t)&&l.remove(t)}function be(e,t,l){e.style[t]=l+"px"}function xt(e,t,l,n){let s=gs.createElement(e);return t!=null&&lt(s,t),l?.insertBefore(s,n),s}function gt(e,t){return xt("div",e,t)}var Yo=new WeakMap;function Lt(e,t,l,n,s){let i="translate("+t+"px,"+l+"px)",r=Yo.get(e);i!=r&&(e.style.transform=i,Yo.set(e,i),t<0||l<0||t>n||l>s?lt(e,rn):bs(e,rn))}var qo=new WeakMap;function jo(e,t,l){let n=t+l,s=qo.get(e);n!=s&&(qo.set(e,n),e.style.background=t,e.style.borderColor=l)}var Jo=new WeakMap;function Zo(e,t,l,n){let s=t+""+l,i=Jo.get(e);s!=i&&(Jo.set(e,s),e.style.height=l+"px",e.style.width=t+"px",e.style.marginLeft=n?-t/2+"px":0,e.style.marginTop=n?-l/2+"px":0)}var Es={passive:!0},Aa={...Es,capture:!0};function an(e,t,l,n){t.addEventListener(e,l,n?Aa:Es)}function ys(e,t,l,n){t.removeEventListener(e,l,Es)}Rn&&ws();function kt(e,t,l,n){let s;l=l||0,n=n||t.length-1;let i=n<=2147483647;for(;n-l>1;)s=i?l+n>>1:st((l+n)/2),t[s]<e?l=s:n=s;return e-t[l]<=t[n]-e?l:n}function Pn(e,t,l,n){for(let s=n==1?t:l;s>=t&&s<=l;s+=n)if(e[s]!=null)return s;return-1}function Ta(e,t,l,n){let s=te,i=-te;if(n==1)s=e[t],i=e[l];else if(n==-1)s=e[l],i=e[t];else for(let r=t;r<=l;r++){let u=e[r];u!=null&&(u<s&&(s=u),u>i&&(i=u))}return[s,i]}function Ea(e,t,l){let n=te,s=-te;for(let i=t;i<=l;i++){let r=e[i];r!=null&&r>0&&(r<n&&(n=r),r>s&&(s=r))}return[n,s]}function Al(e,t,l,n){let s=ei(e),i=ei(t);e==t&&(s==-1?(e*=l,t/=l):(e/=l,t*=l));let r=l==10?Nt:Mi,u=s==1?st:wt,h=i==1?wt:st,d=u(r(De(e))),w=h(r(De(t))),y=Cn(l,d),p=Cn(l,w);return l==10&&(d<0&&(y=pe(y,-d)),w<0&&(p=pe(p,-w))),n||l==2?(e=y*s,t=p*i):(e=Ei(e,y),t=Tl(t,p)),[e,t]}function $s(e,t,l,n){let s=Al(e,t,l,n);return e==0&&(s[0]=0),t==0&&(s[1]=0),s}var Ls=.1,Qo={mode:3,pad:Ls},nl={pad:0,soft:null,mode:0},$a={min:nl,max:nl};function kl(e,t,l,n){return El(l)?Xo(e,t,l):(nl.pad=l,nl.soft=n?0:null,nl.mode=n?3:0,Xo(e,t,$a))}function re(e,t){return e??t}function La(e,t,l){for(t=re(t,0),l=re(l,e.length-1);t<=l;){if(e[t]!=null)return!0;t++}return!1}function Xo(e,t,l){let n=l.min,s=l.max,i=re(n.pad,0),r=re(s.pad,0),u=re(n.hard,-te),h=re(s.hard,te),d=re(n.soft,te),w=re(s.soft,-te),y=re(n.mode,0),p=re(s.mode,0),x=t-e,k=Nt(x),_=Ge(De(e),De(t)),E=Nt(_),N=De(E-k);(x<1e-24||N>10)&&(x=0,(e==0||t==0)&&(x=1e-24,y==2&&d!=te&&(i=0),p==2&&w!=-te&&(r=0)));let D=x||_||1e3,T=Nt(D),F=Cn(10,st(T)),C=D*(x==0?e==0?.1:1:i),W=pe(Ei(e-C,F/10),24),R=e>=d&&(y==1||y==3&&W<=d||y==2&&W>=d)?d:te,q=Ge(u,W<R&&e>=R?R:bt(R,W)),j=D*(x==0?t==0?.1:1:r),O=pe(Tl(t+j,F/10),24),A=t<=w&&(p==1||p==3&&O>=w||p==2&&O<=w)?w:-te,H=bt(h,O>A&&t<=A?A:Ge(A,O));return q==H&&q==0&&(H=100),[q,H]}var Da=new Intl.NumberFormat(Rn?Ma.language:"en-US"),Ds=e=>Da.format(e),ot=Math,Sl=ot.PI,De=ot.abs,st=ot.floor,Le=ot.round,wt=ot.ceil,bt=ot.min,Ge=ot.max,Cn=ot.pow,ei=ot.sign,Nt=ot.log10,Mi=ot.log2,Pa=(e,t=1)=>ot.sinh(e)*t,hs=(e,t=1)=>ot.asinh(e/t),te=1/0;function ti(e){return(Nt((e^e>>31)-(e>>31))|0)+1}function vs(e,t,l){return bt(Ge(e,t),l)}function ee(e){return typeof e=="function"?e:()=>e}var Ca=()=>{},Ai=e=>e,Ti=(e,t)=>t,Na=e=>null,ni=e=>!0,li=(e,t)=>e==t,Fa=/\.\d*?(?=9{6,}|0{6,})/gm,cn=e=>{if(Li(e)||jt.has(e))return e;let t=`${e}`,l=t.match(Fa);if(l==null)return e;let n=l[0].length-1;if(t.indexOf("e-")!=-1){let[s,i]=t.split("e");return+`${cn(s)}e${i}`}return pe(e,n)};function sn(e,t){return cn(pe(cn(e/t))*t)}function Tl(e,t){return cn(wt(cn(e/t))*t)}function Ei(e,t){return cn(st(cn(e/t))*t)}function pe(e,t=0){if(Li(e))return e;let l=10**t,n=e*l*(1+Number.EPSILON);return Le(n)/l}var jt=new Map;function $i(e){return((""+e).split(".")[1]||"").length}function sl(e,t,l,n){let s=[],i=n.map($i);for(let r=t;r<l;r++){let u=De(r),h=pe(Cn(e,r),u);for(let d=0;d<n.length;d++){let w=e==10?+`${n[d]}e${r}`:n[d]*h,y=(r>=0?0:u)+(r>=i[d]?0:i[d]),p=e==10?w:pe(w,y);s.push(p),jt.set(p,y)}}return s}var ll={},Ps=[],Nn=[null,null],qt=Array.isArray,Li=Number.isInteger,za=e=>e===void 0;function si(e){return typeof e=="string"}function El(e){let t=!1;if(e!=null){let l=e.constructor;t=l==null||l==Object}return t}function Ra(e){return e!=null&&typeof e=="object"}var Va=Object.getPrototypeOf(Uint8Array),Di="__proto__";function Fn(e,t=El){let l;if(qt(e)){let n=e.find(s=>s!=null);if(qt(n)||t(n)){l=Array(e.length);for(let s=0;s<e.length;s++)l[s]=Fn(e[s],t)}else l=e.slice()}else if(e instanceof Va)l=e.slice();else if(t(e)){l={};for(let n in e)n!=Di&&(l[n]=Fn(e[n],t))}else l=e;return l}function Ee(e){let t=arguments;for(let l=1;l<t.length;l++){let n=t[l];for(let s in n)s!=Di&&(El(e[s])?Ee(e[s],Fn(n[s])):e[s]=Fn(n[s]))}return e}var Oa=0,Ia=1,Ha=2;function Wa(e,t,l){for(let n=0,s,i=-1;n<t.length;n++){let r=t[n];if(r>i){for(s=r-1;s>=0&&e[s]==null;)e[s--]=null;for(s=r+1;s<l&&e[s]==null;)e[i=s++]=null}}}function Ga(e,t){if(Ka(e)){let r=e[0].slice();for(let u=1;u<e.length;u++)r.push(...e[u].slice(1));return Ya(r[0])||(r=Ua(r)),r}let l=new Set;for(let r=0;r<e.length;r++){let h=e[r][0],d=h.length;for(let w=0;w<d;w++)l.add(h[w])}let n=[Array.from(l).sort((r,u)=>r-u)],s=n[0].length,i=new Map;for(let r=0;r<s;r++)i.set(n[0][r],r);for(let r=0;r<e.length;r++){let u=e[r],h=u[0];for(let d=1;d<u.length;d++){let w=u[d],y=Array(s).fill(void 0),p=t?t[r][d]:Ia,x=[];for(let k=0;k<w.length;k++){let _=w[k],E=i.get(h[k]);_===null?p!=Oa&&(y[E]=_,p==Ha&&x.push(E)):y[E]=_}Wa(y,x,s),n.push(y)}}return n}var Ba=typeof queueMicrotask>"u"?e=>Promise.resolve().then(e):queueMicrotask;function Ua(e){let t=e[0],l=t.length,n=Array(l);for(let i=0;i<n.length;i++)n[i]=i;n.sort((i,r)=>t[i]-t[r]);let s=[];for(let i=0;i<e.length;i++){let r=e[i],u=Array(l);for(let h=0;h<l;h++)u[h]=r[n[h]];s.push(u)}return s}function Ka(e){let t=e[0][0],l=t.length;for(let n=1;n<e.length;n++){let s=e[n][0];if(s.length!=l)return!1;if(s!=t){for(let i=0;i<l;i++)if(s[i]!=t[i])return!1}}return!0}function Ya(e,t=100){let l=e.length;if(l<=1)return!0;let n=0,s=l-1;for(;n<=s&&e[n]==null;)n++;for(;s>=n&&e[s]==null;)s--;if(s<=n)return!0;let i=Ge(1,st((s-n+1)/t));for(let r=e[n],u=n+i;u<=s;u+=i){let h=e[u];if(h!=null){if(h<=r)return!1;r=h}}return!0}var Pi=["January","February","March","April","May","June","July","August","September","October","November","December"],Ci=["Sunday","Monday","Tuesday","Wednesday","Thursday","Friday","Saturday"];function Ni(e){return e.slice(0,3)}var qa=Ci.map(Ni),ja=Pi.map(Ni),Ja={MMMM:Pi,MMM:ja,WWWW:Ci,WWW:qa};function Qn(e){return(e<10?"0":"")+e}function Za(e){return(e<10?"00":e<100?"0":"")+e}var Qa={YYYY:e=>e.getFullYear(),YY:e=>(e.getFullYear()+"").slice(2),MMMM:(e,t)=>t.MMMM[e.getMonth()],MMM:(e,t)=>t.MMM[e.getMonth()],MM:e=>Qn(e.getMonth()+1),M:e=>e.getMonth()+1,DD:e=>Qn(e.getDate()),D:e=>e.getDate(),WWWW:(e,t)=>t.WWWW[e.getDay()],WWW:(e,t)=>t.WWW[e.getDay()],HH:e=>Qn(e.getHours()),H:e=>e.getHours(),h:e=>{let t=e.getHours();return t==0?12:t>12?t-12:t},AA:e=>e.getHours()>=12?"PM":"AM",aa:e=>e.getHours()>=12?"pm":"am",a:e=>e.getHours()>=12?"p":"a",mm:e=>Qn(e.getMinutes()),m:e=>e.getMinutes(),ss:e=>Qn(e.getSeconds()),s:e=>e.getSeconds(),fff:e=>Za(e.getMilliseconds())};function Cs(e,t){t=t||Ja;let l=[],n=/\{([a-z]+)\}|[^{]+/gi,s;for(;s=n.exec(e);)l.push(s[0][0]=="{"?Qa[s[1]]:s[0]);return i=>{let r="";for(let u=0;u<l.length;u++)r+=typeof l[u]=="string"?l[u]:l[u](i,t);return r}}var Xa=new Intl.DateTimeFormat().resolvedOptions().timeZone;function ec(e,t){let l;return t=="UTC"||t=="Etc/UTC"?l=new Date(+e+e.getTimezoneOffset()*6e4):t==Xa?l=e:(l=new Date(e.toLocaleString("en-US",{timeZone:t})),l.setMilliseconds(e.getMilliseconds())),l}var Fi=e=>e%1==0,Ml=[1,2,2.5,5],tc=sl(10,-32,0,Ml),zi=sl(10,0,32,Ml),nc=zi.filter(Fi),on=tc.concat(zi),Ns=`
-`,Ri="{YYYY}",oi=Ns+Ri,Vi="{M}/{D}",tl=Ns+Vi,vl=tl+"/{YY}",Oi="{aa}",lc="{h}:{mm}",Ln=lc+Oi,ii=Ns+Ln,ri=":{ss}",ce=null;function Ii(e){let t=e*1e3,l=t*60,n=l*60,s=n*24,i=s*30,r=s*365,h=(e==1?sl(10,0,3,Ml).filter(Fi):sl(10,-3,0,Ml)).concat([t,t*5,t*10,t*15,t*30,l,l*5,l*10,l*15,l*30,n,n*2,n*3,n*4,n*6,n*8,n*12,s,s*2,s*3,s*4,s*5,s*6,s*7,s*8,s*9,s*10,s*15,i,i*2,i*3,i*4,i*6,r,r*2,r*5,r*10,r*25,r*50,r*100]),d=[[r,Ri,ce,ce,ce,ce,ce,ce,1],[s*28,"{MMM}",oi,ce,ce,ce,ce,ce,1],[s,Vi,oi,ce,ce,ce,ce,ce,1],[n,"{h}"+Oi,vl,ce,tl,ce,ce,ce,1],[l,Ln,vl,ce,tl,ce,ce,ce,1],[t,ri,vl+" "+Ln,ce,tl+" "+Ln,ce,ii,ce,1],[e,ri+".{fff}",vl+" "+Ln,ce,tl+" "+Ln,ce,ii,ce,1]];function w(y){return(p,x,k,_,E,N)=>{let D=[],T=E>=r,F=E>=i&&E<r,C=y(k),W=pe(C*e,3),R=ds(C.getFullYear(),T?0:C.getMonth(),F||T?1:C.getDate()),q=pe(R*e,3);if(F||T){let j=F?E/i:0,O=T?E/r:0,A=W==q?W:pe(ds(R.getFullYear()+O,R.getMonth()+j,1)*e,3),H=new Date(Le(A/e)),Q=H.getFullYear(),se=H.getMonth();for(let B=0;A<=_;B++){let fe=ds(Q+O*B,se+j*B,1),Z=fe-y(pe(fe*e,3));A=pe((+fe+Z)*e,3),A<=_&&D.push(A)}}else{let j=E>=s?s:E,O=st(k)-st(W),A=q+O+Tl(W-q,j);D.push(A);let H=y(A),Q=H.getHours()+H.getMinutes()/l+H.getSeconds()/n,se=E/n,B=p.axes[x]._space,fe=N/B;for(;A=pe(A+E,e==1?0:3),!(A>_);)if(se>1){let Z=st(pe(Q+se,6))%24,oe=y(A).getHours()-Z;oe>1&&(oe=-1),A-=oe*n,Q=(Q+se)%24;let ue=D[D.length-1];pe((A-ue)/E,3)*fe>=.7&&D.push(A)}else D.push(A)}return D}}return[h,d,w]}var[sc,oc,ic]=Ii(1),[rc,ac,cc]=Ii(.001);sl(2,-53,53,[1]);function ai(e,t){return e.map(l=>l.map((n,s)=>s==0||s==8||n==null?n:t(s==1||l[8]==0?n:l[1]+n)))}function ci(e,t){return(l,n,s,i,r)=>{let u=t.find(k=>r>=k[0])||t[t.length-1],h,d,w,y,p,x;return n.map(k=>{let _=e(k),E=_.getFullYear(),N=_.getMonth(),D=_.getDate(),T=_.getHours(),F=_.getMinutes(),C=_.getSeconds(),W=E!=h&&u[2]||N!=d&&u[3]||D!=w&&u[4]||T!=y&&u[5]||F!=p&&u[6]||C!=x&&u[7]||u[1];return h=E,d=N,w=D,y=T,p=F,x=C,W(_)})}}function uc(e,t){let l=Cs(t);return(n,s,i,r,u)=>s.map(h=>l(e(h)))}function ds(e,t,l){return new Date(e,t,l)}function ui(e,t){return t(e)}var fc="{YYYY}-{MM}-{DD} {h}:{mm}{aa}";function fi(e,t){return(l,n,s,i)=>i==null?Ts:t(e(n))}function hc(e,t){let l=e.series[t];return l.width?l.stroke(e,t):l.points.width?l.points.stroke(e,t):null}function dc(e,t){return e.series[t].fill(e,t)}var pc={show:!0,live:!0,isolate:!1,mount:Ca,markers:{show:!0,width:2,stroke:hc,fill:dc,dash:"solid"},idx:null,idxs:null,values:[]};function mc(e,t){let l=e.cursor.points,n=gt(),s=l.size(e,t);be(n,Xn,s),be(n,el,s);let i=s/-2;be(n,"marginLeft",i),be(n,"marginTop",i);let r=l.width(e,t,s);return r&&be(n,"borderWidth",r),n}function gc(e,t){let l=e.series[t].points;return l._fill||l._stroke}function wc(e,t){let l=e.series[t].points;return l._stroke||l._fill}function bc(e,t){return e.series[t].points.size}var ps=[0,0];function yc(e,t,l){return ps[0]=t,ps[1]=l,ps}function _l(e,t,l,n=!0){return s=>{s.button==0&&(!n||s.target==t)&&l(s)}}function ms(e,t,l,n=!0){return s=>{(!n||s.target==t)&&l(s)}}var vc={show:!0,x:!0,y:!0,lock:!1,move:yc,points:{one:!1,show:mc,size:bc,width:0,stroke:wc,fill:gc},bind:{mousedown:_l,mouseup:_l,click:_l,dblclick:_l,mousemove:ms,mouseleave:ms,mouseenter:ms},drag:{setScale:!0,x:!0,y:!1,dist:0,uni:null,click:(e,t)=>{t.stopPropagation(),t.stopImmediatePropagation()},_x:!1,_y:!1},focus:{dist:(e,t,l,n,s)=>n-s,prox:-1,bias:0},hover:{skip:[void 0],prox:null,bias:0},left:-10,top:-10,idx:null,dataIdx:null,idxs:null,event:null},Hi={show:!0,stroke:"rgba(0,0,0,0.07)",width:2},Fs=Ee({},Hi,{filter:Ti}),Wi=Ee({},Fs,{size:10}),Gi=Ee({},Hi,{show:!1}),zs='12px system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, "Noto Sans", sans-serif, "Apple Color Emoji", "Segoe UI Emoji", "Segoe UI Symbol", "Noto Color Emoji"',Bi="bold "+zs,Ui=1.5,hi={show:!0,scale:"x",stroke:As,space:50,gap:5,size:50,labelGap:0,labelSize:30,labelFont:Bi,side:2,grid:Fs,ticks:Wi,border:Gi,font:zs,lineGap:Ui,rotate:0},_c="Value",Sc="Time",di={show:!0,scale:"x",auto:!1,sorted:1,min:te,max:-te,idxs:[]};function xc(e,t,l,n,s){return t.map(i=>i==null?"":Ds(i))}function kc(e,t,l,n,s,i,r){let u=[],h=jt.get(s)||0;l=r?l:pe(Tl(l,s),h);for(let d=l;d<=n;d=pe(d+s,h))u.push(Object.is(d,-0)?0:d);return u}function _s(e,t,l,n,s,i,r){let u=[],h=e.scales[e.axes[t].scale].log,d=h==10?Nt:Mi,w=st(d(l));s=Cn(h,w),h==10&&(s=on[kt(s,on)]);let y=l,p=s*h;h==10&&(p=on[kt(p,on)]);do u.push(y),y=y+s,h==10&&!jt.has(y)&&(y=pe(y,jt.get(s))),y>=p&&(s=y,p=s*h,h==10&&(p=on[kt(p,on)]));while(y<=n);return u}function Mc(e,t,l,n,s,i,r){let h=e.scales[e.axes[t].scale].asinh,d=n>h?_s(e,t,Ge(h,l),n,s):[h],w=n>=0&&l<=0?[0]:[];return(l<-h?_s(e,t,Ge(h,-n),-l,s):[h]).reverse().map(p=>-p).concat(w,d)}var Ki=/./,Ac=/[12357]/,Tc=/[125]/,pi=/1/,Ss=(e,t,l,n)=>e.map((s,i)=>t==4&&s==0||i%n==0&&l.test(s.toExponential()[s<0?1:0])?s:null);function Ec(e,t,l,n,s){let i=e.axes[l],r=i.scale,u=e.scales[r],h=e.valToPos,d=i._space,w=h(10,r),y=h(9,r)-w>=d?Ki:h(7,r)-w>=d?Ac:h(5,r)-w>=d?Tc:pi;if(y==pi){let p=De(h(1,r)-w);if(p<d)return Ss(t.slice().reverse(),u.distr,y,wt(d/p)).reverse()}return Ss(t,u.distr,y,1)}function $c(e,t,l,n,s){let i=e.axes[l],r=i.scale,u=i._space,h=e.valToPos,d=De(h(1,r)-h(2,r));return d<u?Ss(t.slice().reverse(),3,Ki,wt(u/d)).reverse():t}function Lc(e,t,l,n){return n==null?Ts:t==null?"":Ds(t)}var mi={show:!0,scale:"y",stroke:As,space:30,gap:5,size:50,labelGap:0,labelSize:30,labelFont:Bi,side:3,grid:Fs,ticks:Wi,border:Gi,font:zs,lineGap:Ui,rotate:0};function Dc(e,t){let l=3+(e||1)*2;return pe(l*t,3)}function Pc(e,t){let{scale:l,idxs:n}=e.series[0],s=e._data[0],i=e.valToPos(s[n[0]],l,!0),r=e.valToPos(s[n[1]],l,!0),u=De(r-i),h=e.series[t],d=u/(h.points.space*ae);return n[1]-n[0]<=d}var gi={scale:null,auto:!0,sorted:0,min:te,max:-te},Yi=(e,t,l,n,s)=>s,wi={show:!0,auto:!0,sorted:0,gaps:Yi,alpha:1,facets:[Ee({},gi,{scale:"x"}),Ee({},gi,{scale:"y"})]},bi={scale:"y",auto:!0,sorted:0,show:!0,spanGaps:!1,gaps:Yi,alpha:1,points:{show:Pc,filter:null},values:null,min:te,max:-te,idxs:[],path:null,clip:null};function Cc(e,t,l,n,s){return l/10}var qi={time:!0,auto:!0,distr:1,log:10,asinh:1,min:null,max:null,dir:1,ori:0},Nc=Ee({},qi,{time:!1,ori:1}),yi={};function ji(e,t){let l=yi[e];return l||(l={key:e,plots:[],sub(n){l.plots.push(n)},unsub(n){l.plots=l.plots.filter(s=>s!=n)},pub(n,s,i,r,u,h,d){for(let w=0;w<l.plots.length;w++)l.plots[w]!=s&&l.plots[w].pub(n,s,i,r,u,h,d)}},e!=null&&(yi[e]=l)),l}var zn=1,xs=2;function un(e,t,l){let n=e.mode,s=e.series[t],i=n==2?e._data[t]:e._data,r=e.scales,u=e.bbox,h=i[0],d=n==2?i[1]:i[t],w=n==2?r[s.facets[0].scale]:r[e.series[0].scale],y=n==2?r[s.facets[1].scale]:r[s.scale],p=u.left,x=u.top,k=u.width,_=u.height,E=e.valToPosH,N=e.valToPosV;return w.ori==0?l(s,h,d,w,y,E,N,p,x,k,_,Ll,Vn,Pl,Zi,Xi):l(s,h,d,w,y,N,E,x,p,_,k,Dl,On,Os,Qi,er)}function Rs(e,t){let l=0,n=0,s=re(e.bands,Ps);for(let i=0;i<s.length;i++){let r=s[i];r.series[0]==t?l=r.dir:r.series[1]==t&&(r.dir==1?n|=1:n|=2)}return[l,n==1?-1:n==2?1:n==3?2:0]}function Fc(e,t,l,n,s){let i=e.mode,r=e.series[t],u=i==2?r.facets[1].scale:r.scale,h=e.scales[u];return s==-1?h.min:s==1?h.max:h.distr==3?h.dir==1?h.min:h.max:0}function Ft(e,t,l,n,s,i){return un(e,t,(r,u,h,d,w,y,p,x,k,_,E)=>{let N=r.pxRound,D=d.dir*(d.ori==0?1:-1),T=d.ori==0?Vn:On,F,C;D==1?(F=l,C=n):(F=n,C=l);let W=N(y(u[F],d,_,x)),R=N(p(h[F],w,E,k)),q=N(y(u[C],d,_,x)),j=N(p(i==1?w.max:w.min,w,E,k)),O=new Path2D(s);return T(O,q,j),T(O,W,j),T(O,W,R),O})}function $l(e,t,l,n,s,i){let r=null;if(e.length>0){r=new Path2D;let u=t==0?Pl:Os,h=l;for(let y=0;y<e.length;y++){let p=e[y];if(p[1]>p[0]){let x=p[0]-h;x>0&&u(r,h,n,x,n+i),h=p[1]}}let d=l+s-h,w=10;d>0&&u(r,h,n-w/2,d,n+i+w)}return r}function zc(e,t,l){let n=e[e.length-1];n&&n[0]==t?n[1]=l:e.push([t,l])}function Vs(e,t,l,n,s,i,r){let u=[],h=e.length;for(let d=s==1?l:n;d>=l&&d<=n;d+=s)if(t[d]===null){let y=d,p=d;if(s==1)for(;++d<=n&&t[d]===null;)p=d;else for(;--d>=l&&t[d]===null;)p=d;let x=i(e[y]),k=p==y?x:i(e[p]),_=y-s;x=r<=0&&_>=0&&_<h?i(e[_]):x;let N=p+s;k=r>=0&&N>=0&&N<h?i(e[N]):k,k>=x&&u.push([x,k])}return u}function vi(e){return e==0?Ai:e==1?Le:t=>sn(t,e)}function Ji(e){let t=e==0?Ll:Dl,l=e==0?(s,i,r,u,h,d)=>{s.arcTo(i,r,u,h,d)}:(s,i,r,u,h,d)=>{s.arcTo(r,i,h,u,d)},n=e==0?(s,i,r,u,h)=>{s.rect(i,r,u,h)}:(s,i,r,u,h)=>{s.rect(r,i,h,u)};return(s,i,r,u,h,d=0,w=0)=>{d==0&&w==0?n(s,i,r,u,h):(d=bt(d,u/2,h/2),w=bt(w,u/2,h/2),t(s,i+d,r),l(s,i+u,r,i+u,r+h,d),l(s,i+u,r+h,i,r+h,w),l(s,i,r+h,i,r,w),l(s,i,r,i+u,r,d),s.closePath())}}var Ll=(e,t,l)=>{e.moveTo(t,l)},Dl=(e,t,l)=>{e.moveTo(l,t)},Vn=(e,t,l)=>{e.lineTo(t,l)},On=(e,t,l)=>{e.lineTo(l,t)},Pl=Ji(0),Os=Ji(1),Zi=(e,t,l,n,s,i)=>{e.arc(t,l,n,s,i)},Qi=(e,t,l,n,s,i)=>{e.arc(l,t,n,s,i)},Xi=(e,t,l,n,s,i,r)=>{e.bezierCurveTo(t,l,n,s,i,r)},er=(e,t,l,n,s,i,r)=>{e.bezierCurveTo(l,t,s,n,r,i)};function tr(e){return(t,l,n,s,i)=>un(t,l,(r,u,h,d,w,y,p,x,k,_,E)=>{let{pxRound:N,points:D}=r,T,F;d.ori==0?(T=Ll,F=Zi):(T=Dl,F=Qi);let C=pe(D.width*ae,3),W=(D.size-D.width)/2*ae,R=pe(W*2,3),q=new Path2D,j=new Path2D,{left:O,top:A,width:H,height:Q}=t.bbox;Pl(j,O-R,A-R,H+R*2,Q+R*2);let se=B=>{if(h[B]!=null){let fe=N(y(u[B],d,_,x)),Z=N(p(h[B],w,E,k));T(q,fe+W,Z),F(q,fe,Z,W,0,Sl*2)}};if(i)i.forEach(se);else for(let B=n;B<=s;B++)se(B);return{stroke:C>0?q:null,fill:q,clip:j,flags:zn|xs}})}function nr(e){return(t,l,n,s,i,r)=>{n!=s&&(i!=n&&r!=n&&e(t,l,n),i!=s&&r!=s&&e(t,l,s),e(t,l,r))}}var Rc=nr(Vn),Vc=nr(On);function lr(e){let t=re(e?.alignGaps,0);return(l,n,s,i)=>un(l,n,(r,u,h,d,w,y,p,x,k,_,E)=>{let N=r.pxRound,D=V=>N(y(V,d,_,x)),T=V=>N(p(V,w,E,k)),F,C;d.ori==0?(F=Vn,C=Rc):(F=On,C=Vc);let W=d.dir*(d.ori==0?1:-1),R={stroke:new Path2D,fill:null,clip:null,band:null,gaps:null,flags:zn},q=R.stroke,j=te,O=-te,A,H,Q,se=D(u[W==1?s:i]),B=Pn(h,s,i,1*W),fe=Pn(h,s,i,-1*W),Z=D(u[B]),qe=D(u[fe]),Me=!1;for(let V=W==1?s:i;V>=s&&V<=i;V+=W){let ve=D(u[V]),ie=h[V];ve==se?ie!=null?(H=T(ie),j==te&&(F(q,ve,H),A=H),j=bt(H,j),O=Ge(H,O)):ie===null&&(Me=!0):(j!=te&&(C(q,se,j,O,A,H),Q=se),ie!=null?(H=T(ie),F(q,ve,H),j=O=A=H):(j=te,O=-te,ie===null&&(Me=!0)),se=ve)}j!=te&&j!=O&&Q!=se&&C(q,se,j,O,A,H);let[oe,ue]=Rs(l,n);if(r.fill!=null||oe!=0){let V=R.fill=new Path2D(q),ve=r.fillTo(l,n,r.min,r.max,oe),ie=T(ve);F(V,qe,ie),F(V,Z,ie)}if(!r.spanGaps){let V=[];Me&&V.push(...Vs(u,h,s,i,W,D,t)),R.gaps=V=r.gaps(l,n,s,i,V),R.clip=$l(V,d.ori,x,k,_,E)}return ue!=0&&(R.band=ue==2?[Ft(l,n,s,i,q,-1),Ft(l,n,s,i,q,1)]:Ft(l,n,s,i,q,ue)),R})}function Oc(e){let t=re(e.align,1),l=re(e.ascDesc,!1),n=re(e.alignGaps,0),s=re(e.extend,!1);return(i,r,u,h)=>un(i,r,(d,w,y,p,x,k,_,E,N,D,T)=>{let F=d.pxRound,{left:C,width:W}=i.bbox,R=oe=>F(k(oe,p,D,E)),q=oe=>F(_(oe,x,T,N)),j=p.ori==0?Vn:On,O={stroke:new Path2D,fill:null,clip:null,band:null,gaps:null,flags:zn},A=O.stroke,H=p.dir*(p.ori==0?1:-1);u=Pn(y,u,h,1),h=Pn(y,u,h,-1);let Q=q(y[H==1?u:h]),se=R(w[H==1?u:h]),B=se,fe=se;s&&t==-1&&(fe=C,j(A,fe,Q)),j(A,se,Q);for(let oe=H==1?u:h;oe>=u&&oe<=h;oe+=H){let ue=y[oe];if(ue==null)continue;let V=R(w[oe]),ve=q(ue);t==1?j(A,V,Q):j(A,B,ve),j(A,V,ve),Q=ve,B=V}let Z=B;s&&t==1&&(Z=C+W,j(A,Z,Q));let[qe,Me]=Rs(i,r);if(d.fill!=null||qe!=0){let oe=O.fill=new Path2D(A),ue=d.fillTo(i,r,d.min,d.max,qe),V=q(ue);j(oe,Z,V),j(oe,fe,V)}if(!d.spanGaps){let oe=[];oe.push(...Vs(w,y,u,h,H,R,n));let ue=d.width*ae/2,V=l||t==1?ue:-ue,ve=l||t==-1?-ue:ue;oe.forEach(ie=>{ie[0]+=V,ie[1]+=ve}),O.gaps=oe=d.gaps(i,r,u,h,oe),O.clip=$l(oe,p.ori,E,N,D,T)}return Me!=0&&(O.band=Me==2?[Ft(i,r,u,h,A,-1),Ft(i,r,u,h,A,1)]:Ft(i,r,u,h,A,Me)),O})}function _i(e,t,l,n,s,i,r=te){if(e.length>1){let u=null;for(let h=0,d=1/0;h<e.length;h++)if(t[h]!==void 0){if(u!=null){let w=De(e[h]-e[u]);w<d&&(d=w,r=De(l(e[h],n,s,i)-l(e[u],n,s,i)))}u=h}}return r}function Ic(e){e=e||ll;let t=re(e.size,[.6,te,1]),l=e.align||0,n=e.gap||0,s=e.radius;s=s==null?[0,0]:typeof s=="number"?[s,0]:s;let i=ee(s),r=1-t[0],u=re(t[1],te),h=re(t[2],1),d=re(e.disp,ll),w=re(e.each,x=>{}),{fill:y,stroke:p}=d;return(x,k,_,E)=>un(x,k,(N,D,T,F,C,W,R,q,j,O,A)=>{let H=N.pxRound,Q=l,se=n*ae,B=u*ae,fe=h*ae,Z,qe;F.ori==0?[Z,qe]=i(x,k):[qe,Z]=i(x,k);let Me=F.dir*(F.ori==0?1:-1),oe=F.ori==0?Pl:Os,ue=F.ori==0?w:(K,Be,Vt,Zt,Ot,Ze,yt)=>{w(K,Be,Vt,Ot,Zt,yt,Ze)},V=re(x.bands,Ps).find(K=>K.series[0]==k),ve=V!=null?V.dir:0,ie=N.fillTo(x,k,N.min,N.max,ve),rt=H(R(ie,C,A,j)),In,$e,je,at=O,xe=H(N.width*ae),Je=!1,zt=null,fn=null,Jt=null,hn=null;y!=null&&(xe==0||p!=null)&&(Je=!0,zt=y.values(x,k,_,E),fn=new Map,new Set(zt).forEach(K=>{K!=null&&fn.set(K,new Path2D)}),xe>0&&(Jt=p.values(x,k,_,E),hn=new Map,new Set(Jt).forEach(K=>{K!=null&&hn.set(K,new Path2D)})));let{x0:Hn,size:Dt}=d;if(Hn!=null&&Dt!=null){Q=1,D=Hn.values(x,k,_,E),Hn.unit==2&&(D=D.map(Vt=>x.posToVal(q+Vt*O,F.key,!0)));let K=Dt.values(x,k,_,E);Dt.unit==2?$e=K[0]*O:$e=W(K[0],F,O,q)-W(0,F,O,q),at=_i(D,T,W,F,O,q,at),je=at-$e+se}else at=_i(D,T,W,F,O,q,at),je=at*r+se,$e=at-je;je<1&&(je=0),xe>=$e/2&&(xe=0),je<5&&(H=Ai);let ct=je>0,ol=at-je-(ct?xe:0);$e=H(vs(ol,fe,B)),In=(Q==0?$e/2:Q==Me?0:$e)-Q*Me*((Q==0?se/2:0)+(ct?xe/2:0));let Mt={stroke:null,fill:null,clip:null,band:null,gaps:null,flags:0},Rt=Je?null:new Path2D,U=null;if(V!=null)U=x.data[V.series[1]];else{let{y0:K,y1:Be}=d;K!=null&&Be!=null&&(T=Be.values(x,k,_,E),U=K.values(x,k,_,E))}let J=Z*$e,He=qe*$e;for(let K=Me==1?_:E;K>=_&&K<=E;K+=Me){let Be=T[K];if(Be==null)continue;if(U!=null){let At=U[K]??0;if(Be-At==0)continue;rt=R(At,C,A,j)}let Vt=F.distr!=2||d!=null?D[K]:K,Zt=W(Vt,F,O,q),Ot=R(re(Be,ie),C,A,j),Ze=H(Zt-In),yt=H(Ge(Ot,rt)),tt=H(bt(Ot,rt)),ut=yt-tt;if(Be!=null){let At=Be<0?He:J,It=Be<0?J:He;Je?(xe>0&&Jt[K]!=null&&oe(hn.get(Jt[K]),Ze,tt+st(xe/2),$e,Ge(0,ut-xe),At,It),zt[K]!=null&&oe(fn.get(zt[K]),Ze,tt+st(xe/2),$e,Ge(0,ut-xe),At,It)):oe(Rt,Ze,tt+st(xe/2),$e,Ge(0,ut-xe),At,It),ue(x,k,K,Ze-xe/2,tt,$e+xe,ut)}}return xe>0?Mt.stroke=Je?hn:Rt:Je||(Mt._fill=N.width==0?N._fill:N._stroke??N._fill,Mt.width=0),Mt.fill=Je?fn:Rt,Mt})}function Hc(e,t){let l=re(t?.alignGaps,0);return(n,s,i,r)=>un(n,s,(u,h,d,w,y,p,x,k,_,E,N)=>{let D=u.pxRound,T=Z=>D(p(Z,w,E,k)),F=Z=>D(x(Z,y,N,_)),C,W,R;w.ori==0?(C=Ll,R=Vn,W=Xi):(C=Dl,R=On,W=er);let q=w.dir*(w.ori==0?1:-1);i=Pn(d,i,r,1),r=Pn(d,i,r,-1);let j=T(h[q==1?i:r]),O=j,A=[],H=[];for(let Z=q==1?i:r;Z>=i&&Z<=r;Z+=q)if(d[Z]!=null){let Me=h[Z],oe=T(Me);A.push(O=oe),H.push(F(d[Z]))}let Q={stroke:e(A,H,C,R,W,D),fill:null,clip:null,band:null,gaps:null,flags:zn},se=Q.stroke,[B,fe]=Rs(n,s);if(u.fill!=null||B!=0){let Z=Q.fill=new Path2D(se),qe=u.fillTo(n,s,u.min,u.max,B),Me=F(qe);R(Z,O,Me),R(Z,j,Me)}if(!u.spanGaps){let Z=[];Z.push(...Vs(h,d,i,r,q,T,l)),Q.gaps=Z=u.gaps(n,s,i,r,Z),Q.clip=$l(Z,w.ori,k,_,E,N)}return fe!=0&&(Q.band=fe==2?[Ft(n,s,i,r,se,-1),Ft(n,s,i,r,se,1)]:Ft(n,s,i,r,se,fe)),Q})}function Wc(e){return Hc(Gc,e)}function Gc(e,t,l,n,s,i){let r=e.length;if(r<2)return null;let u=new Path2D;if(l(u,e[0],t[0]),r==2)n(u,e[1],t[1]);else{let h=Array(r),d=Array(r-1),w=Array(r-1),y=Array(r-1);for(let p=0;p<r-1;p++)w[p]=t[p+1]-t[p],y[p]=e[p+1]-e[p],d[p]=w[p]/y[p];h[0]=d[0];for(let p=1;p<r-1;p++)d[p]===0||d[p-1]===0||d[p-1]>0!=d[p]>0?h[p]=0:(h[p]=3*(y[p-1]+y[p])/((2*y[p]+y[p-1])/d[p-1]+(y[p]+2*y[p-1])/d[p]),isFinite(h[p])||(h[p]=0));h[r-1]=d[r-2];for(let p=0;p<r-1;p++)s(u,e[p]+y[p]/3,t[p]+h[p]*y[p]/3,e[p+1]-y[p]/3,t[p+1]-h[p+1]*y[p]/3,e[p+1],t[p+1])}return u}var ks=new Set;function Si(){for(let e of ks)e.syncRect(!0)}Rn&&(an(xa,Dn,Si),an(ka,Dn,Si,!0),an(xl,Dn,()=>{Ie.pxRatio=ae}));var Bc=lr(),Uc=tr();function xi(e,t,l,n){return(n?[e[0],e[1]].concat(e.slice(2)):[e[0]].concat(e.slice(1))).map((i,r)=>Ms(i,r,t,l))}function Kc(e,t){return e.map((l,n)=>n==0?{}:Ee({},t,l))}function Ms(e,t,l,n){return Ee({},t==0?l:n,e)}function sr(e,t,l){return t==null?Nn:[t,l]}var Yc=sr;function qc(e,t,l){return t==null?Nn:kl(t,l,Ls,!0)}function or(e,t,l,n){return t==null?Nn:Al(t,l,e.scales[n].log,!1)}var jc=or;function ir(e,t,l,n){return t==null?Nn:$s(t,l,e.scales[n].log,!1)}var Jc=ir;function Zc(e,t,l,n,s){let i=Ge(ti(e),ti(t)),r=t-e,u=kt(s/n*r,l);do{let h=l[u],d=n*h/r;if(d>=s&&i+(h<5?jt.get(h):0)<=17)return[h,d]}while(++u<l.length);return[0,0]}function ki(e){let t,l;return e=e.replace(/(\d+)px/,(n,s)=>(t=Le((l=+s)*ae))+"px"),[e,t,l]}function Qc(e){e.show&&[e.font,e.labelFont].forEach(t=>{let l=pe(t[2]*ae,1);t[0]=t[0].replace(/[0-9.]+px/,l+"px"),t[1]=l})}function Ie(e,t,l){let n={mode:re(e.mode,1)},s=n.mode;function i(o,a){return((a.distr==3?Nt(o>0?o:a.clamp(n,o,a.min,a.max,a.key)):a.distr==4?hs(o,a.asinh):a.distr==100?a.fwd(o):o)-a._min)/(a._max-a._min)}function r(o,a,c,f){let m=i(o,a);return f+c*(a.dir==-1?1-m:m)}function u(o,a,c,f){let m=i(o,a);return f+c*(a.dir==-1?m:1-m)}function h(o,a,c,f){return a.ori==0?r(o,a,c,f):u(o,a,c,f)}n.valToPosH=r,n.valToPosV=u;let d=!1;n.status=0;let w=n.root=gt(oa);if(e.id!=null&&(w.id=e.id),lt(w,e.class),e.title){let o=gt(aa,w);o.textContent=e.title}let y=xt("canvas"),p=n.ctx=y.getContext("2d"),x=gt(ca,w);an("click",x,o=>{o.target===_&&(me!=xn||ye!=kn)&&Oe.click(n,o)},!0);let k=n.under=gt(ua,x);x.appendChild(y);let _=n.over=gt(fa,x);e=Fn(e);let E=+re(e.pxAlign,1),N=vi(E);(e.plugins||[]).forEach(o=>{o.opts&&(e=o.opts(n,e)||e)});let D=e.ms||.001,T=n.series=s==1?xi(e.series||[],di,bi,!1):Kc(e.series||[null],wi),F=n.axes=xi(e.axes||[],hi,mi,!0),C=n.scales={},W=n.bands=e.bands||[];W.forEach(o=>{o.fill=ee(o.fill||null),o.dir=re(o.dir,-1)});let R=s==2?T[1].facets[0].scale:T[0].scale,q={axes:$r,series:kr},j=(e.drawOrder||["axes","series"]).map(o=>q[o]);function O(o){let a=C[o];if(a==null){let c=(e.scales||ll)[o]||ll;if(c.from!=null)O(c.from),C[o]=Ee({},C[c.from],c,{key:o});else{a=C[o]=Ee({},o==R?qi:Nc,c),a.key=o;let f=a.time,m=a.range,b=qt(m);if((o!=R||s==2&&!f)&&(b&&(m[0]==null||m[1]==null)&&(m={min:m[0]==null?Qo:{mode:1,hard:m[0],soft:m[0]},max:m[1]==null?Qo:{mode:1,hard:m[1],soft:m[1]}},b=!1),!b&&El(m))){let v=m;m=(S,M,$)=>M==null?Nn:kl(M,$,v)}a.range=ee(m||(f?Yc:o==R?a.distr==3?jc:a.distr==4?Jc:sr:a.distr==3?or:a.distr==4?ir:qc)),a.auto=ee(b?!1:a.auto),a.clamp=ee(a.clamp||Cc),a._min=a._max=null}}}O("x"),O("y"),s==1&&T.forEach(o=>{O(o.scale)}),F.forEach(o=>{O(o.scale)});for(let o in e.scales)O(o);let A=C[R],H=A.distr,Q,se;A.ori==0?(lt(w,ia),Q=r,se=u):(lt(w,ra),Q=u,se=r);let B={};for(let o in C){let a=C[o];(a.min!=null||a.max!=null)&&(B[o]={min:a.min,max:a.max},a.min=a.max=null)}let fe=e.tzDate||(o=>new Date(Le(o/D))),Z=e.fmtDate||Cs,qe=D==1?ic(fe):cc(fe),Me=ci(fe,ai(D==1?oc:ac,Z)),oe=fi(fe,ui(fc,Z)),ue=[],V=n.legend=Ee({},pc,e.legend),ve=V.show,ie=V.markers;V.idxs=ue,ie.width=ee(ie.width),ie.dash=ee(ie.dash),ie.stroke=ee(ie.stroke),ie.fill=ee(ie.fill);let rt,In,$e,je=[],at=[],xe,Je=!1,zt={};if(V.live){let o=T[1]?T[1].values:null;Je=o!=null,xe=Je?o(n,1,0):{_:0};for(let a in xe)zt[a]=Ts}if(ve)if(rt=xt("table",wa,w),$e=xt("tbody",null,rt),V.mount(n,rt),Je){In=xt("thead",null,rt,$e);let o=xt("tr",null,In);xt("th",null,o);for(var fn in xe)xt("th",Vo,o).textContent=fn}else lt(rt,ya),V.live&&lt(rt,ba);let Jt={show:!0},hn={show:!1};function Hn(o,a){if(a==0&&(Je||!V.live||s==2))return Nn;let c=[],f=xt("tr",va,$e,$e.childNodes[a]);lt(f,o.class),o.show||lt(f,rn);let m=xt("th",null,f);if(ie.show){let S=gt(_a,m);if(a>0){let M=ie.width(n,a);M&&(S.style.border=M+"px "+ie.dash(n,a)+" "+ie.stroke(n,a)),S.style.background=ie.fill(n,a)}}let b=gt(Vo,m);b.textContent=o.label,a>0&&(ie.show||(b.style.color=o.width>0?ie.stroke(n,a):ie.fill(n,a)),ct("click",m,S=>{if(I._lock)return;Xt(S);let M=T.indexOf(o);if((S.ctrlKey||S.metaKey)!=V.isolate){let $=T.some((L,P)=>P>0&&P!=M&&L.show);T.forEach((L,P)=>{P>0&&Tt(P,$?P==M?Jt:hn:Jt,!0,Ae.setSeries)})}else Tt(M,{show:!o.show},!0,Ae.setSeries)},!1),pn&&ct(Go,m,S=>{I._lock||(Xt(S),Tt(T.indexOf(o),An,!0,Ae.setSeries))},!1));for(var v in xe){let S=xt("td",Sa,f);S.textContent="--",c.push(S)}return[f,c]}let Dt=new Map;function ct(o,a,c,f=!0){let m=Dt.get(a)||{},b=I.bind[o](n,a,c,f);b&&(an(o,a,m[o]=b),Dt.set(a,m))}function ol(o,a,c){let f=Dt.get(a)||{};for(let m in f)(o==null||m==o)&&(ys(m,a,f[m]),delete f[m]);o==null&&Dt.delete(a)}let Mt=0,Rt=0,U=0,J=0,He=0,K=0,Be=He,Vt=K,Zt=U,Ot=J,Ze=0,yt=0,tt=0,ut=0;n.bbox={};let At=!1,It=!1,dn=!1,Qt=!1,il=!1,ft=!1;function zl(o,a,c){(c||o!=n.width||a!=n.height)&&Ws(o,a),yn(!1),dn=!0,It=!0,vn()}function Ws(o,a){n.width=Mt=U=o,n.height=Rt=J=a,He=K=0,wr(),br();let c=n.bbox;Ze=c.left=sn(He*ae,.5),yt=c.top=sn(K*ae,.5),tt=c.width=sn(U*ae,.5),ut=c.height=sn(J*ae,.5)}let pr=3;function mr(){let o=!1,a=0;for(;!o;){a++;let c=Tr(a),f=Er(a);o=a==pr||c&&f,o||(Ws(n.width,n.height),It=!0)}}function gr({width:o,height:a}){zl(o,a)}n.setSize=gr;function wr(){let o=!1,a=!1,c=!1,f=!1;F.forEach((m,b)=>{if(m.show&&m._show){let{side:v,_size:S}=m,M=v%2,$=m.label!=null?m.labelSize:0,L=S+$;L>0&&(M?(U-=L,v==3?(He+=L,f=!0):c=!0):(J-=L,v==0?(K+=L,o=!0):a=!0))}}),en[0]=o,en[1]=c,en[2]=a,en[3]=f,U-=Wt[1]+Wt[3],He+=Wt[3],J-=Wt[2]+Wt[0],K+=Wt[0]}function br(){let o=He+U,a=K+J,c=He,f=K;function m(b,v){switch(b){case 1:return o+=v,o-v;case 2:return a+=v,a-v;case 3:return c-=v,c+v;case 0:return f-=v,f+v}}F.forEach((b,v)=>{if(b.show&&b._show){let S=b.side;b._pos=m(S,b._size),b.label!=null&&(b._lpos=m(S,b.labelSize))}})}let I=n.cursor=Ee({},vc,{drag:{y:s==2}},e.cursor);if(I.dataIdx==null){let o=I.hover,a=o.skip=new Set(o.skip??[]);a.add(void 0);let c=o.prox=ee(o.prox),f=o.bias??=0;I.dataIdx=(m,b,v,S)=>{if(b==0)return v;let M=v,$=c(m,b,v,S)??te,L=$>=0&&$<te,P=A.ori==0?U:J,G=I.left,de=t[0],ne=t[b];if(a.has(ne[v])){M=null;let X=null,Y=null,z;if(f==0||f==-1)for(z=v;X==null&&z-- >0;)a.has(ne[z])||(X=z);if(f==0||f==1)for(z=v;Y==null&&z++<ne.length;)a.has(ne[z])||(Y=z);if(X!=null||Y!=null)if(L){let he=X==null?-1/0:Q(de[X],A,P,0),ke=Y==null?1/0:Q(de[Y],A,P,0),Se=G-he,we=ke-G;Se<=we?Se<=$&&(M=X):we<=$&&(M=Y)}else M=Y==null?X:X==null?Y:v-X<=Y-v?X:Y}else L&&De(G-Q(de[v],A,P,0))>$&&(M=null);return M}}let Xt=o=>{I.event=o};I.idxs=ue,I._lock=!1;let We=I.points;We.show=ee(We.show),We.size=ee(We.size),We.stroke=ee(We.stroke),We.width=ee(We.width),We.fill=ee(We.fill);let Ht=n.focus=Ee({},e.focus||{alpha:.3},I.focus),pn=Ht.prox>=0,mn=pn&&We.one,ht=[],gn=[],wn=[];function Gs(o,a){let c=We.show(n,a);if(c)return lt(c,ga),lt(c,o.class),Lt(c,-10,-10,U,J),_.insertBefore(c,ht[a]),c}function Bs(o,a){if(s==1||a>0){let c=s==1&&C[o.scale].time,f=o.value;o.value=c?si(f)?fi(fe,ui(f,Z)):f||oe:f||Lc,o.label=o.label||(c?Sc:_c)}if(mn||a>0){o.width=o.width==null?1:o.width,o.paths=o.paths||Bc||Na,o.fillTo=ee(o.fillTo||Fc),o.pxAlign=+re(o.pxAlign,E),o.pxRound=vi(o.pxAlign),o.stroke=ee(o.stroke||null),o.fill=ee(o.fill||null),o._stroke=o._fill=o._paths=o._focus=null;let c=Dc(Ge(1,o.width),1),f=o.points=Ee({},{size:c,width:Ge(1,c*.2),stroke:o.stroke,space:c*2,paths:Uc,_stroke:null,_fill:null},o.points);f.show=ee(f.show),f.filter=ee(f.filter),f.fill=ee(f.fill),f.stroke=ee(f.stroke),f.paths=ee(f.paths),f.pxAlign=o.pxAlign}if(ve){let c=Hn(o,a);je.splice(a,0,c[0]),at.splice(a,0,c[1]),V.values.push(null)}if(I.show){ue.splice(a,0,null);let c=null;mn?a==0&&(c=Gs(o,a)):a>0&&(c=Gs(o,a)),ht.splice(a,0,c),gn.splice(a,0,0),wn.splice(a,0,0)}Re("addSeries",a)}function yr(o,a){a=a??T.length,o=s==1?Ms(o,a,di,bi):Ms(o,a,{},wi),T.splice(a,0,o),Bs(T[a],a)}n.addSeries=yr;function vr(o){if(T.splice(o,1),ve){V.values.splice(o,1),at.splice(o,1);let a=je.splice(o,1)[0];ol(null,a.firstChild),a.remove()}I.show&&(ue.splice(o,1),ht.splice(o,1)[0].remove(),gn.splice(o,1),wn.splice(o,1)),Re("delSeries",o)}n.delSeries=vr;let en=[!1,!1,!1,!1];function _r(o,a){if(o._show=o.show,o.show){let c=o.side%2,f=C[o.scale];f==null&&(o.scale=c?T[1].scale:R,f=C[o.scale]);let m=f.time;o.size=ee(o.size),o.space=ee(o.space),o.rotate=ee(o.rotate),qt(o.incrs)&&o.incrs.forEach(v=>{!jt.has(v)&&jt.set(v,$i(v))}),o.incrs=ee(o.incrs||(f.distr==2?nc:m?D==1?sc:rc:on)),o.splits=ee(o.splits||(m&&f.distr==1?qe:f.distr==3?_s:f.distr==4?Mc:kc)),o.stroke=ee(o.stroke),o.grid.stroke=ee(o.grid.stroke),o.ticks.stroke=ee(o.ticks.stroke),o.border.stroke=ee(o.border.stroke);let b=o.values;o.values=qt(b)&&!qt(b[0])?ee(b):m?qt(b)?ci(fe,ai(b,Z)):si(b)?uc(fe,b):b||Me:b||xc,o.filter=ee(o.filter||(f.distr>=3&&f.log==10?Ec:f.distr==3&&f.log==2?$c:Ti)),o.font=ki(o.font),o.labelFont=ki(o.labelFont),o._size=o.size(n,null,a,0),o._space=o._rotate=o._incrs=o._found=o._splits=o._values=null,o._size>0&&(en[a]=!0,o._el=gt(ha,x))}}function Wn(o,a,c,f){let[m,b,v,S]=c,M=a%2,$=0;return M==0&&(S||b)&&($=a==0&&!m||a==2&&!v?Le(hi.size/3):0),M==1&&(m||v)&&($=a==1&&!b||a==3&&!S?Le(mi.size/2):0),$}let Us=n.padding=(e.padding||[Wn,Wn,Wn,Wn]).map(o=>ee(re(o,Wn))),Wt=n._padding=Us.map((o,a)=>o(n,a,en,0)),Ve,Ce=null,Ne=null,rl=s==1?T[0].idxs:null,vt=null,Gn=!1;function Ks(o,a){if(t=o??[],n.data=n._data=t,s==2){Ve=0;for(let c=1;c<T.length;c++)Ve+=t[c][0].length}else{t.length==0&&(n.data=n._data=t=[[]]),vt=t[0],Ve=vt.length;let c=t;if(H==2){c=t.slice();let f=c[0]=Array(Ve);for(let m=0;m<Ve;m++)f[m]=m}n._data=t=c}if(yn(!0),Re("setData"),H==2&&(dn=!0),a!==!1){let c=A;c.auto(n,Gn)?Rl():Bt(R,c.min,c.max),Qt=Qt||I.left>=0,ft=!0,vn()}}n.setData=Ks;function Rl(){Gn=!0;let o,a;s==1&&(Ve>0?(Ce=rl[0]=0,Ne=rl[1]=Ve-1,o=t[0][Ce],a=t[0][Ne],H==2?(o=Ce,a=Ne):o==a&&(H==3?[o,a]=Al(o,o,A.log,!1):H==4?[o,a]=$s(o,o,A.log,!1):A.time?a=o+Le(86400/D):[o,a]=kl(o,a,Ls,!0))):(Ce=rl[0]=o=null,Ne=rl[1]=a=null)),Bt(R,o,a)}let al,bn,Vl,Ol,Il,Hl,Wl,Gl,Bl,Pt;function Ys(o,a,c,f,m,b){o??=Io,c??=Ps,f??="butt",m??=Io,b??="round",o!=al&&(p.strokeStyle=al=o),m!=bn&&(p.fillStyle=bn=m),a!=Vl&&(p.lineWidth=Vl=a),b!=Il&&(p.lineJoin=Il=b),f!=Hl&&(p.lineCap=Hl=f),c!=Ol&&p.setLineDash(Ol=c)}function qs(o,a,c,f){a!=bn&&(p.fillStyle=bn=a),o!=Wl&&(p.font=Wl=o),c!=Gl&&(p.textAlign=Gl=c),f!=Bl&&(p.textBaseline=Bl=f)}function Ul(o,a,c,f,m=0){if(f.length>0&&o.auto(n,Gn)&&(a==null||a.min==null)){let b=re(Ce,0),v=re(Ne,f.length-1),S=c.min==null?o.distr==3?Ea(f,b,v):Ta(f,b,v,m):[c.min,c.max];o.min=bt(o.min,c.min=S[0]),o.max=Ge(o.max,c.max=S[1])}}let js={min:null,max:null};function Sr(){for(let f in C){let m=C[f];B[f]==null&&(m.min==null||B[R]!=null&&m.auto(n,Gn))&&(B[f]=js)}for(let f in C){let m=C[f];B[f]==null&&m.from!=null&&B[m.from]!=null&&(B[f]=js)}B[R]!=null&&yn(!0);let o={};for(let f in B){let m=B[f];if(m!=null){let b=o[f]=Fn(C[f],Ra);if(m.min!=null)Ee(b,m);else if(f!=R||s==2)if(Ve==0&&b.from==null){let v=b.range(n,null,null,f);b.min=v[0],b.max=v[1]}else b.min=te,b.max=-te}}if(Ve>0){T.forEach((f,m)=>{if(s==1){let b=f.scale,v=B[b];if(v==null)return;let S=o[b];if(m==0){let M=S.range(n,S.min,S.max,b);S.min=M[0],S.max=M[1],Ce=kt(S.min,t[0]),Ne=kt(S.max,t[0]),Ne-Ce>1&&(t[0][Ce]<S.min&&Ce++,t[0][Ne]>S.max&&Ne--),f.min=vt[Ce],f.max=vt[Ne]}else f.show&&f.auto&&Ul(S,v,f,t[m],f.sorted);f.idxs[0]=Ce,f.idxs[1]=Ne}else if(m>0&&f.show&&f.auto){let[b,v]=f.facets,S=b.scale,M=v.scale,[$,L]=t[m],P=o[S],G=o[M];P!=null&&Ul(P,B[S],b,$,b.sorted),G!=null&&Ul(G,B[M],v,L,v.sorted),f.min=v.min,f.max=v.max}});for(let f in o){let m=o[f],b=B[f];if(m.from==null&&(b==null||b.min==null)){let v=m.range(n,m.min==te?null:m.min,m.max==-te?null:m.max,f);m.min=v[0],m.max=v[1]}}}for(let f in o){let m=o[f];if(m.from!=null){let b=o[m.from];if(b.min==null)m.min=m.max=null;else{let v=m.range(n,b.min,b.max,f);m.min=v[0],m.max=v[1]}}}let a={},c=!1;for(let f in o){let m=o[f],b=C[f];if(b.min!=m.min||b.max!=m.max){b.min=m.min,b.max=m.max;let v=b.distr;b._min=v==3?Nt(b.min):v==4?hs(b.min,b.asinh):v==100?b.fwd(b.min):b.min,b._max=v==3?Nt(b.max):v==4?hs(b.max,b.asinh):v==100?b.fwd(b.max):b.max,a[f]=c=!0}}if(c){T.forEach((f,m)=>{s==2?m>0&&a.y&&(f._paths=null):a[f.scale]&&(f._paths=null)});for(let f in a)dn=!0,Re("setScale",f);I.show&&I.left>=0&&(Qt=ft=!0)}for(let f in B)B[f]=null}function xr(o){let a=vs(Ce-1,0,Ve-1),c=vs(Ne+1,0,Ve-1);for(;o[a]==null&&a>0;)a--;for(;o[c]==null&&c<Ve-1;)c++;return[a,c]}function kr(){Ve>0&&(T.forEach((o,a)=>{if(a>0&&o.show&&(Js(a,!1),Js(a,!0),o._paths==null)){Pt!=o.alpha&&(p.globalAlpha=Pt=o.alpha);let c=s==2?[0,t[a][0].length-1]:xr(t[a]);o._paths=o.paths(n,a,c[0],c[1]),Pt!=1&&(p.globalAlpha=Pt=1)}}),T.forEach((o,a)=>{if(a>0&&o.show){Pt!=o.alpha&&(p.globalAlpha=Pt=o.alpha),o._paths!=null&&Zs(a,!1);{let c=o._paths!=null?o._paths.gaps:null,f=o.points.show(n,a,Ce,Ne,c),m=o.points.filter(n,a,f,c);(f||m)&&(o.points._paths=o.points.paths(n,a,Ce,Ne,m),Zs(a,!0))}Pt!=1&&(p.globalAlpha=Pt=1),Re("drawSeries",a)}}))}function Js(o,a){let c=a?T[o].points:T[o];c._stroke=c.stroke(n,o),c._fill=c.fill(n,o)}function Zs(o,a){let c=a?T[o].points:T[o],{stroke:f,fill:m,clip:b,flags:v,_stroke:S=c._stroke,_fill:M=c._fill,_width:$=c.width}=c._paths;$=pe($*ae,3);let L=null,P=$%2/2;a&&M==null&&(M=$>0?"#fff":S);let G=c.pxAlign==1&&P>0;if(G&&p.translate(P,P),!a){let de=Ze-$/2,ne=yt-$/2,X=tt+$,Y=ut+$;L=new Path2D,L.rect(de,ne,X,Y)}a?Kl(S,$,c.dash,c.cap,M,f,m,v,b):Mr(o,S,$,c.dash,c.cap,M,f,m,v,L,b),G&&p.translate(-P,-P)}function Mr(o,a,c,f,m,b,v,S,M,$,L){let P=!1;M!=0&&W.forEach((G,de)=>{if(G.series[0]==o){let ne=T[G.series[1]],X=t[G.series[1]],Y=(ne._paths||ll).band;qt(Y)&&(Y=G.dir==1?Y[0]:Y[1]);let z,he=null;ne.show&&Y&&La(X,Ce,Ne)?(he=G.fill(n,de)||b,z=ne._paths.clip):Y=null,Kl(a,c,f,m,he,v,S,M,$,L,z,Y),P=!0}}),P||Kl(a,c,f,m,b,v,S,M,$,L)}let Qs=zn|xs;function Kl(o,a,c,f,m,b,v,S,M,$,L,P){Ys(o,a,c,f,m),(M||$||P)&&(p.save(),M&&p.clip(M),$&&p.clip($)),P?(S&Qs)==Qs?(p.clip(P),L&&p.clip(L),ul(m,v),cl(o,b,a)):S&xs?(ul(m,v),p.clip(P),cl(o,b,a)):S&zn&&(p.save(),p.clip(P),L&&p.clip(L),ul(m,v),p.restore(),cl(o,b,a)):(ul(m,v),cl(o,b,a)),(M||$||P)&&p.restore()}function cl(o,a,c){c>0&&(a instanceof Map?a.forEach((f,m)=>{p.strokeStyle=al=m,p.stroke(f)}):a!=null&&o&&p.stroke(a))}function ul(o,a){a instanceof Map?a.forEach((c,f)=>{p.fillStyle=bn=f,p.fill(c)}):a!=null&&o&&p.fill(a)}function Ar(o,a,c,f){let m=F[o],b;if(f<=0)b=[0,0];else{let v=m._space=m.space(n,o,a,c,f),S=m._incrs=m.incrs(n,o,a,c,f,v);b=Zc(a,c,S,f,v)}return m._found=b}function Yl(o,a,c,f,m,b,v,S,M,$){let L=v%2/2;E==1&&p.translate(L,L),Ys(S,v,M,$,S),p.beginPath();let P,G,de,ne,X=m+(f==0||f==3?-b:b);c==0?(G=m,ne=X):(P=m,de=X);for(let Y=0;Y<o.length;Y++)a[Y]!=null&&(c==0?P=de=o[Y]:G=ne=o[Y],p.moveTo(P,G),p.lineTo(de,ne));p.stroke(),E==1&&p.translate(-L,-L)}function Tr(o){let a=!0;return F.forEach((c,f)=>{if(!c.show)return;let m=C[c.scale];if(m.min==null){c._show&&(a=!1,c._show=!1,yn(!1));return}else c._show||(a=!1,c._show=!0,yn(!1));let b=c.side,v=b%2,{min:S,max:M}=m,[$,L]=Ar(f,S,M,v==0?U:J);if(L==0)return;let P=m.distr==2,G=c._splits=c.splits(n,f,S,M,$,L,P),de=m.distr==2?G.map(z=>vt[z]):G,ne=m.distr==2?vt[G[1]]-vt[G[0]]:$,X=c._values=c.values(n,c.filter(n,de,f,L,ne),f,L,ne);c._rotate=b==2?c.rotate(n,X,f,L):0;let Y=c._size;c._size=wt(c.size(n,X,f,o)),Y!=null&&c._size!=Y&&(a=!1)}),a}function Er(o){let a=!0;return Us.forEach((c,f)=>{let m=c(n,f,en,o);m!=Wt[f]&&(a=!1),Wt[f]=m}),a}function $r(){for(let o=0;o<F.length;o++){let a=F[o];if(!a.show||!a._show)continue;let c=a.side,f=c%2,m,b,v=a.stroke(n,o),S=c==0||c==3?-1:1;if(a.label){let Ye=a.labelGap*S,nt=Le((a._lpos+Ye)*ae);qs(a.labelFont[0],v,"center",c==2?Zn:Oo),p.save(),f==1?(m=b=0,p.translate(nt,Le(yt+ut/2)),p.rotate((c==3?-Sl:Sl)/2)):(m=Le(Ze+tt/2),b=nt),p.fillText(a.label,m,b),p.restore()}let[M,$]=a._found;if($==0)continue;let L=C[a.scale],P=f==0?tt:ut,G=f==0?Ze:yt,de=Le(a.gap*ae),ne=a._splits,X=L.distr==2?ne.map(Ye=>vt[Ye]):ne,Y=L.distr==2?vt[ne[1]]-vt[ne[0]]:M,z=a.ticks,he=a.border,ke=z.show?Le(z.size*ae):0,Se=a._rotate*-Sl/180,we=N(a._pos*ae),Te=(ke+de)*S,Qe=we+Te;b=f==0?Qe:0,m=f==1?Qe:0;let Xe=a.font[0],dt=a.align==1?$n:a.align==2?us:Se>0?$n:Se<0?us:f==0?"center":c==3?us:$n,_t=Se||f==1?"middle":c==2?Zn:Oo;qs(Xe,v,dt,_t);let St=a.font[1]*a.lineGap,Ue=ne.map(Ye=>N(h(Ye,L,P,G))),$t=a._values;for(let Ye=0;Ye<$t.length;Ye++){let nt=$t[Ye];if(nt!=null){f==0?m=Ue[Ye]:b=Ue[Ye],nt=""+nt;let En=nt.indexOf(`
-`)==-1?[nt]:nt.split(/\n/gm);for(let Yt=0;Yt<En.length;Yt++){let pt=En[Yt];Se?(p.save(),p.translate(m,b+Yt*St),p.rotate(Se),p.fillText(pt,0,0),p.restore()):p.fillText(pt,m,b+Yt*St)}}}z.show&&Yl(Ue,z.filter(n,X,o,$,Y),f,c,we,ke,pe(z.width*ae,3),z.stroke(n,o),z.dash,z.cap);let Ke=a.grid;Ke.show&&Yl(Ue,Ke.filter(n,X,o,$,Y),f,f==0?2:1,f==0?yt:Ze,f==0?ut:tt,pe(Ke.width*ae,3),Ke.stroke(n,o),Ke.dash,Ke.cap),he.show&&Yl([we],[1],f==0?1:0,f==0?1:2,f==1?yt:Ze,f==1?ut:tt,pe(he.width*ae,3),he.stroke(n,o),he.dash,he.cap)}Re("drawAxes")}function yn(o){T.forEach((a,c)=>{c>0&&(a._paths=null,o&&(s==1?(a.min=null,a.max=null):a.facets.forEach(f=>{f.min=null,f.max=null})))})}let fl=!1,ql=!1,Bn=[];function Lr(){ql=!1;for(let o=0;o<Bn.length;o++)Re(...Bn[o]);Bn.length=0}function vn(){fl||(Ba(Xs),fl=!0)}function Dr(o,a=!1){fl=!0,ql=a,o(n),Xs(),a&&Bn.length>0&&queueMicrotask(Lr)}n.batch=Dr;function Xs(){if(At&&(Sr(),At=!1),dn&&(mr(),dn=!1),It){if(be(k,$n,He),be(k,Zn,K),be(k,Xn,U),be(k,el,J),be(_,$n,He),be(_,Zn,K),be(_,Xn,U),be(_,el,J),be(x,Xn,Mt),be(x,el,Rt),y.width=Le(Mt*ae),y.height=Le(Rt*ae),F.forEach(({_el:o,_show:a,_size:c,_pos:f,side:m})=>{if(o!=null)if(a){let b=m===3||m===0?c:0,v=m%2==1;be(o,v?"left":"top",f-b),be(o,v?"width":"height",c),be(o,v?"top":"left",v?K:He),be(o,v?"height":"width",v?J:U),bs(o,rn)}else lt(o,rn)}),al=bn=Vl=Il=Hl=Wl=Gl=Bl=Ol=null,Pt=1,Yn(!0),He!=Be||K!=Vt||U!=Zt||J!=Ot){yn(!1);let o=U/Zt,a=J/Ot;if(I.show&&!Qt&&I.left>=0){I.left*=o,I.top*=a,_n&&Lt(_n,Le(I.left),0,U,J),Sn&&Lt(Sn,0,Le(I.top),U,J);for(let c=0;c<ht.length;c++){let f=ht[c];f!=null&&(gn[c]*=o,wn[c]*=a,Lt(f,wt(gn[c]),wt(wn[c]),U,J))}}if(ge.show&&!il&&ge.left>=0&&ge.width>0){ge.left*=o,ge.width*=o,ge.top*=a,ge.height*=a;for(let c in es)be(Mn,c,ge[c])}Be=He,Vt=K,Zt=U,Ot=J}Re("setSize"),It=!1}Mt>0&&Rt>0&&(p.clearRect(0,0,y.width,y.height),Re("drawClear"),j.forEach(o=>o()),Re("draw")),ge.show&&il&&(hl(ge),il=!1),I.show&&Qt&&(nn(null,!0,!1),Qt=!1),V.show&&V.live&&ft&&(Ql(),ft=!1),d||(d=!0,n.status=1,Re("ready")),Gn=!1,fl=!1}n.redraw=(o,a)=>{dn=a||!1,o!==!1?Bt(R,A.min,A.max):vn()};function jl(o,a){let c=C[o];if(c.from==null){if(Ve==0){let f=c.range(n,a.min,a.max,o);a.min=f[0],a.max=f[1]}if(a.min>a.max){let f=a.min;a.min=a.max,a.max=f}if(Ve>1&&a.min!=null&&a.max!=null&&a.max-a.min<1e-16)return;o==R&&c.distr==2&&Ve>0&&(a.min=kt(a.min,t[0]),a.max=kt(a.max,t[0]),a.min==a.max&&a.max++),B[o]=a,At=!0,vn()}}n.setScale=jl;let Jl,Zl,_n,Sn,eo,to,xn,kn,no,lo,me,ye,Gt=!1,Oe=I.drag,Fe=Oe.x,ze=Oe.y;I.show&&(I.x&&(Jl=gt(pa,_)),I.y&&(Zl=gt(ma,_)),A.ori==0?(_n=Jl,Sn=Zl):(_n=Zl,Sn=Jl),me=I.left,ye=I.top);let ge=n.select=Ee({show:!0,over:!0,left:0,width:0,top:0,height:0},e.select),Mn=ge.show?gt(da,ge.over?_:k):null;function hl(o,a){if(ge.show){for(let c in o)ge[c]=o[c],c in es&&be(Mn,c,o[c]);a!==!1&&Re("setSelect")}}n.setSelect=hl;function Pr(o,a){let c=T[o],f=ve?je[o]:null;if(c.show)f&&bs(f,rn);else{f&&lt(f,rn);let m=mn?ht[0]:ht[o];Lt(m,-10,-10,U,J)}}function Bt(o,a,c){jl(o,{min:a,max:c})}function Tt(o,a,c,f){a.focus!=null&&Rr(o),a.show!=null&&T.forEach((m,b)=>{b>0&&(o==b||o==null)&&(m.show=a.show,Pr(b,a.show),s==2?(Bt(m.facets[0].scale,null,null),Bt(m.facets[1].scale,null,null)):Bt(m.scale,null,null),vn())}),c!==!1&&Re("setSeries",o,a),f&&qn("setSeries",n,o,a)}n.setSeries=Tt;function Cr(o,a){Ee(W[o],a)}function Nr(o,a){o.fill=ee(o.fill||null),o.dir=re(o.dir,-1),a=a??W.length,W.splice(a,0,o)}function Fr(o){o==null?W.length=0:W.splice(o,1)}n.addBand=Nr,n.setBand=Cr,n.delBand=Fr;function zr(o,a){T[o].alpha=a,I.show&&ht[o]&&(ht[o].style.opacity=a),ve&&je[o]&&(je[o].style.opacity=a)}let Ct,Ut,tn,An={focus:!0};function Rr(o){if(o!=tn){let a=o==null,c=Ht.alpha!=1;T.forEach((f,m)=>{if(s==1||m>0){let b=a||m==0||m==o;f._focus=a?null:b,c&&zr(m,b?1:Ht.alpha)}}),tn=o,c&&vn()}}ve&&pn&&ct(Bo,rt,o=>{I._lock||(Xt(o),tn!=null&&Tt(null,An,!0,Ae.setSeries))});function Et(o,a,c){let f=C[a];c&&(o=o/ae-(f.ori==1?K:He));let m=U;f.ori==1&&(m=J,o=m-o),f.dir==-1&&(o=m-o);let b=f._min,v=f._max,S=o/m,M=b+(v-b)*S,$=f.distr;return $==3?Cn(10,M):$==4?Pa(M,f.asinh):$==100?f.bwd(M):M}function Vr(o,a){let c=Et(o,R,a);return kt(c,t[0],Ce,Ne)}n.valToIdx=o=>kt(o,t[0]),n.posToIdx=Vr,n.posToVal=Et,n.valToPos=(o,a,c)=>C[a].ori==0?r(o,C[a],c?tt:U,c?Ze:0):u(o,C[a],c?ut:J,c?yt:0),n.setCursor=(o,a,c)=>{me=o.left,ye=o.top,nn(null,a,c)};function so(o,a){be(Mn,$n,ge.left=o),be(Mn,Xn,ge.width=a)}function oo(o,a){be(Mn,Zn,ge.top=o),be(Mn,el,ge.height=a)}let Un=A.ori==0?so:oo,Kn=A.ori==1?so:oo;function Or(){if(ve&&V.live)for(let o=s==2?1:0;o<T.length;o++){if(o==0&&Je)continue;let a=V.values[o],c=0;for(let f in a)at[o][c++].firstChild.nodeValue=a[f]}}function Ql(o,a){if(o!=null&&(o.idxs?o.idxs.forEach((c,f)=>{ue[f]=c}):za(o.idx)||ue.fill(o.idx),V.idx=ue[0]),ve&&V.live){for(let c=0;c<T.length;c++)(c>0||s==1&&!Je)&&Ir(c,ue[c]);Or()}ft=!1,a!==!1&&Re("setLegend")}n.setLegend=Ql;function Ir(o,a){let c=T[o],f=o==0&&H==2?vt:t[o],m;Je?m=c.values(n,o,a)??zt:(m=c.value(n,a==null?null:f[a],o,a),m=m==null?zt:{_:m}),V.values[o]=m}function nn(o,a,c){no=me,lo=ye,[me,ye]=I.move(n,me,ye),I.left=me,I.top=ye,I.show&&(_n&&Lt(_n,Le(me),0,U,J),Sn&&Lt(Sn,0,Le(ye),U,J));let f,m=Ce>Ne;Ct=te,Ut=null;let b=A.ori==0?U:J,v=A.ori==1?U:J;if(me<0||Ve==0||m){f=I.idx=null;for(let S=0;S<T.length;S++){let M=ht[S];M!=null&&Lt(M,-10,-10,U,J)}pn&&Tt(null,An,!0,o==null&&Ae.setSeries),V.live&&(ue.fill(f),ft=!0)}else{let S,M,$;s==1&&(S=A.ori==0?me:ye,M=Et(S,R),f=I.idx=kt(M,t[0],Ce,Ne),$=Q(t[0][f],A,b,0));let L=-10,P=-10,G=0,de=0,ne=!0,X="",Y="";for(let z=s==2?1:0;z<T.length;z++){let he=T[z],ke=ue[z],Se=ke==null?null:s==1?t[z][ke]:t[z][1][ke],we=I.dataIdx(n,z,f,M),Te=we==null?null:s==1?t[z][we]:t[z][1][we];ft=ft||Te!=Se||we!=ke,ue[z]=we;let Qe=we==f?$:Q(s==1?t[0][we]:t[z][0][we],A,b,0);if(z>0&&he.show){let Xe=Te==null?-10:se(Te,s==1?C[he.scale]:C[he.facets[1].scale],v,0);if(pn&&Te!=null){let dt=A.ori==1?me:ye,_t=De(Ht.dist(n,z,we,Xe,dt));if(_t<Ct){let St=Ht.bias;if(St!=0){let Ue=Et(dt,he.scale),$t=Te>=0?1:-1,Ke=Ue>=0?1:-1;Ke==$t&&(Ke==1?St==1?Te>=Ue:Te<=Ue:St==1?Te<=Ue:Te>=Ue)&&(Ct=_t,Ut=z)}else Ct=_t,Ut=z}}if(ft||mn){let dt,_t;A.ori==0?(dt=Qe,_t=Xe):(dt=Xe,_t=Qe);let St,Ue,$t,Ke,Ye,nt,En=!0,Yt=We.bbox;if(Yt!=null){En=!1;let pt=Yt(n,z);$t=pt.left,Ke=pt.top,St=pt.width,Ue=pt.height}else $t=dt,Ke=_t,St=Ue=We.size(n,z);if(nt=We.fill(n,z),Ye=We.stroke(n,z),mn)z==Ut&&Ct<=Ht.prox&&(L=$t,P=Ke,G=St,de=Ue,ne=En,X=nt,Y=Ye);else{let pt=ht[z];pt!=null&&(gn[z]=$t,wn[z]=Ke,Zo(pt,St,Ue,En),jo(pt,nt,Ye),Lt(pt,wt($t),wt(Ke),U,J))}}}}if(mn){let z=Ht.prox,he=tn==null?Ct<=z:Ct>z||Ut!=tn;if(ft||he){let ke=ht[0];gn[0]=L,wn[0]=P,Zo(ke,G,de,ne),jo(ke,X,Y),Lt(ke,wt(L),wt(P),U,J)}}}if(ge.show&&Gt)if(o!=null){let[S,M]=Ae.scales,[$,L]=Ae.match,[P,G]=o.cursor.sync.scales,de=o.cursor.drag;if(Fe=de._x,ze=de._y,Fe||ze){let{left:ne,top:X,width:Y,height:z}=o.select,he=o.scales[P].ori,ke=o.posToVal,Se,we,Te,Qe,Xe,dt=S!=null&&$(S,P),_t=M!=null&&L(M,G);dt&&Fe?(he==0?(Se=ne,we=Y):(Se=X,we=z),Te=C[S],Qe=Q(ke(Se,P),Te,b,0),Xe=Q(ke(Se+we,P),Te,b,0),Un(bt(Qe,Xe),De(Xe-Qe))):Un(0,b),_t&&ze?(he==1?(Se=ne,we=Y):(Se=X,we=z),Te=C[M],Qe=se(ke(Se,G),Te,v,0),Xe=se(ke(Se+we,G),Te,v,0),Kn(bt(Qe,Xe),De(Xe-Qe))):Kn(0,v)}else dl()}else{let S=De(no-eo),M=De(lo-to);if(A.ori==1){let G=S;S=M,M=G}Fe=Oe.x&&S>=Oe.dist,ze=Oe.y&&M>=Oe.dist;let $=Oe.uni;$!=null?Fe&&ze&&(Fe=S>=$,ze=M>=$,!Fe&&!ze&&(M>S?ze=!0:Fe=!0)):Oe.x&&Oe.y&&(Fe||ze)&&(Fe=ze=!0);let L,P;Fe&&(A.ori==0?(L=xn,P=me):(L=kn,P=ye),Un(bt(L,P),De(P-L)),ze||Kn(0,v)),ze&&(A.ori==1?(L=xn,P=me):(L=kn,P=ye),Kn(bt(L,P),De(P-L)),Fe||Un(0,b)),!Fe&&!ze&&(Un(0,0),Kn(0,0))}if(Oe._x=Fe,Oe._y=ze,o==null){if(c){if(wo!=null){let[S,M]=Ae.scales;Ae.values[0]=S!=null?Et(A.ori==0?me:ye,S):null,Ae.values[1]=M!=null?Et(A.ori==1?me:ye,M):null}qn(Ho,n,me,ye,U,J,f)}if(pn){let S=c&&Ae.setSeries,M=Ht.prox;tn==null?Ct<=M&&Tt(Ut,An,!0,S):Ct>M?Tt(null,An,!0,S):Ut!=tn&&Tt(Ut,An,!0,S)}}ft&&(V.idx=f,Ql()),a!==!1&&Re("setCursor")}let Kt=null;Object.defineProperty(n,"rect",{get(){return Kt==null&&Yn(!1),Kt}});function Yn(o=!1){o?Kt=null:(Kt=_.getBoundingClientRect(),Re("syncRect",Kt))}function io(o,a,c,f,m,b,v){I._lock||Gt&&o!=null&&o.movementX==0&&o.movementY==0||(Xl(o,a,c,f,m,b,v,!1,o!=null),o!=null?nn(null,!0,!0):nn(a,!0,!1))}function Xl(o,a,c,f,m,b,v,S,M){if(Kt==null&&Yn(!1),Xt(o),o!=null)c=o.clientX-Kt.left,f=o.clientY-Kt.top;else{if(c<0||f<0){me=-10,ye=-10;return}let[$,L]=Ae.scales,P=a.cursor.sync,[G,de]=P.values,[ne,X]=P.scales,[Y,z]=Ae.match,he=a.axes[0].side%2==1,ke=A.ori==0?U:J,Se=A.ori==1?U:J,we=he?b:m,Te=he?m:b,Qe=he?f:c,Xe=he?c:f;if(ne!=null?c=Y($,ne)?h(G,C[$],ke,0):-10:c=ke*(Qe/we),X!=null?f=z(L,X)?h(de,C[L],Se,0):-10:f=Se*(Xe/Te),A.ori==1){let dt=c;c=f,f=dt}}M&&((c<=1||c>=U-1)&&(c=sn(c,U)),(f<=1||f>=J-1)&&(f=sn(f,J))),S?(eo=c,to=f,[xn,kn]=I.move(n,c,f)):(me=c,ye=f)}let es={width:0,height:0,left:0,top:0};function dl(){hl(es,!1)}let ro,ao,co,uo;function fo(o,a,c,f,m,b,v){Gt=!0,Fe=ze=Oe._x=Oe._y=!1,Xl(o,a,c,f,m,b,v,!0,!1),o!=null&&(ct(fs,gs,ho,!1),qn(Wo,n,xn,kn,U,J,null));let{left:S,top:M,width:$,height:L}=ge;ro=S,ao=M,co=$,uo=L,dl()}function ho(o,a,c,f,m,b,v){Gt=Oe._x=Oe._y=!1,Xl(o,a,c,f,m,b,v,!1,!0);let{left:S,top:M,width:$,height:L}=ge,P=$>0||L>0,G=ro!=S||ao!=M||co!=$||uo!=L;if(P&&G&&hl(ge),Oe.setScale&&P&&G){let de=S,ne=$,X=M,Y=L;if(A.ori==1&&(de=M,ne=L,X=S,Y=$),Fe&&Bt(R,Et(de,R),Et(de+ne,R)),ze)for(let z in C){let he=C[z];z!=R&&he.from==null&&he.min!=te&&Bt(z,Et(X+Y,z),Et(X,z))}dl()}else I.lock&&(I._lock=!I._lock,nn(null,!0,!1));o!=null&&(ol(fs,gs),qn(fs,n,me,ye,U,J,null))}function Hr(o,a,c,f,m,b,v){if(I._lock)return;Xt(o);let S=Gt;if(Gt){let M=!0,$=!0,L=10,P,G;A.ori==0?(P=Fe,G=ze):(P=ze,G=Fe),P&&G&&(M=me<=L||me>=U-L,$=ye<=L||ye>=J-L),P&&M&&(me=me<xn?0:U),G&&$&&(ye=ye<kn?0:J),nn(null,!0,!0),Gt=!1}me=-10,ye=-10,nn(null,!0,!0),S&&(Gt=S)}function po(o,a,c,f,m,b,v){I._lock||(Xt(o),Rl(),dl(),o!=null&&qn(Uo,n,me,ye,U,J,null))}function mo(){F.forEach(Qc),zl(n.width,n.height,!0)}an(xl,Dn,mo);let Tn={};Tn.mousedown=fo,Tn.mousemove=io,Tn.mouseup=ho,Tn.dblclick=po,Tn.setSeries=(o,a,c,f)=>{let m=Ae.match[2];c=m(n,a,c),c!=-1&&Tt(c,f,!0,!1)},I.show&&(ct(Wo,_,fo),ct(Ho,_,io),ct(Go,_,o=>{Xt(o),Yn(!1)}),ct(Bo,_,Hr),ct(Uo,_,po),ks.add(n),n.syncRect=Yn);let pl=n.hooks=e.hooks||{};function Re(o,a,c){ql?Bn.push([o,a,c]):o in pl&&pl[o].forEach(f=>{f.call(null,n,a,c)})}(e.plugins||[]).forEach(o=>{for(let a in o.hooks)pl[a]=(pl[a]||[]).concat(o.hooks[a])});let go=(o,a,c)=>c,Ae=Ee({key:null,setSeries:!1,filters:{pub:ni,sub:ni},scales:[R,T[1]?T[1].scale:null],match:[li,li,go],values:[null,null]},I.sync);Ae.match.length==2&&Ae.match.push(go),I.sync=Ae;let wo=Ae.key,ts=ji(wo);function qn(o,a,c,f,m,b,v){Ae.filters.pub(o,a,c,f,m,b,v)&&ts.pub(o,a,c,f,m,b,v)}ts.sub(n);function Wr(o,a,c,f,m,b,v){Ae.filters.sub(o,a,c,f,m,b,v)&&Tn[o](null,a,c,f,m,b,v)}n.pub=Wr;function Gr(){ts.unsub(n),ks.delete(n),Dt.clear(),ys(xl,Dn,mo),w.remove(),rt?.remove(),Re("destroy")}n.destroy=Gr;function ns(){Re("init",e,t),Ks(t||e.data,!1),B[R]?jl(R,B[R]):Rl(),il=ge.show&&(ge.width>0||ge.height>0),Qt=ft=!0,zl(e.width,e.height)}return T.forEach(Bs),F.forEach(_r),l?l instanceof HTMLElement?(l.appendChild(w),ns()):l(n,ns):ns(),n}Ie.assign=Ee;Ie.fmtNum=Ds;Ie.rangeNum=kl;Ie.rangeLog=Al;Ie.rangeAsinh=$s;Ie.orient=un;Ie.pxRatio=ae;Ie.join=Ga;Ie.fmtDate=Cs,Ie.tzDate=ec;Ie.sync=ji;{Ie.addGap=zc,Ie.clipGaps=$l;let e=Ie.paths={points:tr};e.linear=lr,e.stepped=Oc,e.bars=Ic,e.spline=Wc}var it=["series-1","series-2","series-3","series-4","series-5","series-6","series-7","series-8"],ar=[[],[8,4],[2,3]],rr=8,Cl=e=>e.map(t=>t===null?null:-t);function cr(e,t){return[eu(e,t),tu(e,t),nu(e,t),lu(e,t),su(e),ou(e,t),iu(e),ru(e),au(e),cu(e),uu(e)].filter(n=>n&&n.figures.length)}var Xc=e=>e.meta.source==="truth"?"flown":"flown (estimate)";function eu(e,t){let l=e.flown("position"),{t:n}=l,s=e.channel("reference.position"),i=_e(l,n),r=s&&_e(s,n),u=t&&_e(t.flown("position"),n);return{title:"Position of the payload",figures:["North","East","Altitude"].map((w,y)=>{let p=y===2?Cl:k=>k,x=[];return r&&x.push({label:"reference",values:p(r[y]),color:"reference",width:3}),x.push({label:Xc(e),values:p(i[y]),color:"flown"}),u&&x.push({label:"B flown",values:p(u[y]),color:"series-2",dash:[6,4]}),{title:w,unit:"m",t:n,series:x,digits:3}})}}function tu(e,t){let l=wl(e);if(!l)return null;let n=[{spans:l.avoiding,color:"detected",label:"plan is off the reference: avoiding or waiting"}],s=[];if(e.has("plan.position")){let i=e.meta.summary.safety?.payload_tracking_bound_m;s.push({title:"Error: distance from the plan",unit:"m",t:l.t,zero:!0,digits:4,series:[{label:"error",values:l.error,color:"flown"}],lines:i?[{value:i,label:"bound of the guarantee"}]:[],shaded:n})}if(s.push({title:"Distance from the mission’s reference",unit:"m",t:l.t,zero:!0,digits:3,series:[{label:"distance",values:l.deviation,color:"flown"}],shaded:n}),t){let[i,r]=[e,t].map(u=>_e(u.flown("position"),l.t));s.push({title:"Distance between the payloads of A and B at the same time",unit:"m",t:l.t,zero:!0,digits:3,series:[{label:"B − A",values:jn(i,r),color:"series-2"}]})}return{title:"Error and avoidance",note:"An error is a distance from the plan. To avoid obstacles the plan itself leaves the reference, which is wanted (shaded).",figures:s}}function nu(e,t){let l=e.flown("attitude"),{t:n}=l,s=e.meta.summary.limits?.payload_tilt_deg?.limit,i=s?[{value:s,label:"limit"},{value:-s,label:""}]:[],r=as(l),u=["roll","pitch","yaw"].map((d,w)=>({label:d,values:Array.from(r[w]),color:it[w]}));if(t){let d=t.flown("attitude"),w=as(d);["roll","pitch","yaw"].forEach((y,p)=>{u.push({label:`B ${y}`,values:rs(d.t,w[p],n),color:it[p],dash:[6,4]})})}return{title:"Attitude of the payload",figures:[{title:"Roll, pitch and yaw (reference: 0)",unit:"°",t:n,series:u,lines:i,digits:2}]}}function lu(e,t){let l=e.channel("clearance.each")??e.channel("clearance.nearest");if(!l)return null;let n=e.meta.summary.limits?.clearance?.limit,s=_e(l,l.t).map((h,d)=>({label:l.columns[d],values:h,color:it[d%it.length]})),i=t?.channel("clearance.nearest");i&&s.push({label:"B nearest",values:_e(i,l.t)[0],color:"series-8",dash:[6,4]});let r=[{value:e.meta.margin,label:"margin of plans"}];n&&(n===e.meta.margin?r[0].label="margin of plans, limit":r.push({value:n,label:"limit"}));let u=Math.max(4*Math.max(e.meta.margin,n??0),2);return{title:"Clearance",note:"From the formation’s hull (payload and rotor discs) to the surface of each obstacle, on the true state.",figures:[{title:"Hull to obstacle",unit:"m",t:l.t,series:s,lines:r,digits:3,zero:!0},{title:`The same, below ${u} m`,unit:"m",t:l.t,series:s,lines:r,digits:3,range:[0,u]}]}}function su(e){let t=e.channel("plan.clearance"),l=e.channel("plan.progress_rate"),n=e.channel("plan.slack"),s=e.channel("plan.verified");if(!s||!l)return null;let{t:i}=s,u=[{spans:bl(i,Array.from(s.series[0],y=>y<.5)),color:"bad",label:"plan not verified to keep the margin"}],h=[];t&&h.push({label:"least clearance of the plan",values:_e(t,i)[0],color:"plan"}),n&&h.push({label:"slack (violation)",values:_e(n,i)[0],color:"bad"});let d=e.channel("plan.solved");if(d){let y=bl(i,Array.from(d.series[0],p=>p<.5));u.push({spans:y,color:"reference",label:"no solution: the plan before, or a stop, is flown"})}let w=[];return h.length&&w.push({title:"Barrier: clearance of the plan over its horizon, at most the margin",unit:"m",t:i,series:h,zero:!0,digits:3,lines:[{value:e.meta.margin,label:"margin"}],shaded:u}),w.push({title:"Progress rate along the mission (1: as planned, 0: waiting)",unit:"1",t:i,zero:!0,digits:2,series:[{label:"progress rate",values:_e(l,i)[0],color:"flown"}]}),{title:"Safety filter",figures:w}}function ou(e,t){let l=e.channel("separation");if(!l)return null;let n=e.meta.summary.limits?.uav_separation?.limit,s=[{label:"nearest two",values:_e(l,l.t)[0],color:"flown"}],i=t?.channel("separation");i&&s.push({label:"B",values:_e(i,l.t)[0],color:"series-2",dash:[6,4]});let r={value:2*e.meta.disc_radius,label:"rotor discs touch"},u=n?[r,{value:n,label:"limit"}]:[r];return{title:"Distance between UAVs",figures:[{title:"Centres of the nearest two",unit:"m",t:l.t,series:s,lines:u,digits:3}]}}function iu(e){let t=[],l=e.channel("truth.thrust"),n=r=>_e(r,r.t).map((u,h)=>({label:r.columns[h],values:u,color:it[h%it.length],dash:ar[Math.floor(h/it.length)%3]}));if(l){let r=[{value:e.meta.thrust_max,label:"largest thrust"}];t.push({title:"Thrust of each UAV",unit:"N",t:l.t,series:n(l),lines:r,zero:!0,digits:2})}let s=e.channel("truth.tension");if(s){let r=[{value:0,label:"below: compression"}];t.push({title:"Tension of each link",unit:"N",t:s.t,series:n(s),lines:r,digits:2})}let i=e.channel("estimate.disturbance");if(i){let r=_e(i,i.t),u=["north","east","up"].map((h,d)=>({label:h,values:d===2?Cl(r[2]):r[d],color:it[d]}));t.push({title:"Disturbance force on the payload, as estimated",unit:"N",t:i.t,series:u,digits:2})}return{title:"Forces",figures:t}}function ru(e){let t=e.channel("estimate.payload.position"),l=e.channel("truth.payload.position");if(!t||!l)return null;let{t:n}=t,s=e.channel("estimate.payload.position_sd"),[i,r]=[_e(t,n),_e(l,n)],u=s&&_e(s,n),h=["north","east","altitude"].map((w,y)=>{let p=i[y].map((E,N)=>E===null||r[y][N]===null?null:E-r[y][N]),x=y===2?Cl(p):p,k=[],_=[];if(u){let E=u[y].map(N=>N===null?null:3*N);k.push({label:"+3σ",values:E,color:"reference",width:1}),k.push({label:"−3σ",values:Cl(E),color:"reference",width:1}),_.push({low:2,high:1,color:"reference"})}return k.push({label:"estimate − truth",values:x,color:"estimate"}),{title:`Error of the estimate, ${w}`,unit:"m",t:n,series:k,bands:_,digits:4}});return{title:"Estimation",note:u?"Grey: three standard deviations, as the estimator states them.":"Standard deviations are not on record.",figures:h}}function au(e){let t=e.names("innovations.");if(!t.length)return null;let l=t.map(d=>{let w=e.channel(d),[,y,p]=d.split(".");return{label:`${y} ${p}`,channel:w,most:Math.max(...Array.from(w.series[0]).filter(Number.isFinite),0)}});l.sort((d,w)=>w.most-d.most);let n=l.slice(0,rr),s=n.reduce((d,w)=>w.channel.t.length>d.channel.t.length?w:d),{t:i}=s.channel,r=n.map(({label:d,channel:w},y)=>({label:d,values:_e(w,i)[0],color:it[y],dash:ar[0]})),u=[{value:1,label:"rejected above"}],h=l.length-n.length;return{title:"Innovation tests",note:`Above 1 a measurement is rejected.${h>0?` Shown are the ${rr} sources with the largest ratios; ${h} others stayed below.`:""}`,figures:[{title:"Test ratio",unit:"1",t:i,series:r,lines:u,zero:!0,digits:2}]}}function cu(e){let t=e.channel("steps.time");if(!t)return null;let l={total:"whole step",estimator:"estimation",planner:"planning"},n=_e(t,t.t).map((i,r)=>({label:l[t.columns[r]]??t.columns[r],values:i,color:it[(r+7)%it.length],width:r?1:1.5})),s=[{value:1e3*e.meta.control_period,label:"control period"}];return{title:"Compute time",figures:[{title:"Control step, and its parts (wall time)",unit:"ms",t:t.t,series:n,lines:s,zero:!0,digits:1}]}}function uu(e){return{title:"Links",note:"From the telemetry log.",figures:[["link.loss","Messages lost, vehicle to ground","%",1],["link.latency","Latency, vehicle to ground (above the least)","ms",1],["link.rate","Messages received","1/s",0]].filter(([n])=>e.has(n)).map(([n,s,i,r])=>{let u=e.channel(n),h=_e(u,u.t).map((d,w)=>({label:u.columns[w],values:d,color:it[w%it.length]}));return{title:s,unit:i,t:u.t,series:h,zero:!0,digits:r}})}}var ur=170,fu=[{kind:"phase",label:"phase (every second one)",color:"band-phase"},{kind:"fault",label:"fault",color:"band-fault"},{kind:"mode",label:"onboard mode or failsafe",color:"band-mode"},{kind:"isolation",label:"channel isolated",color:"band-isolation"},{kind:"alarm",label:"alarm",color:"bad"}],Nl=class{constructor(t,l,n,s){this.run=l,this.clock=n,this.ghost=s,this.shown=[],this.zooming=!1,this.legendAt=-1/0,this.observer=new IntersectionObserver(i=>{for(let r of i){let u=this.shown.find(({plot:h})=>h.root.parentElement===r.target);u&&(u.visible=r.isIntersecting,u.visible&&this.place(u,!0))}}),this.groups=cr(l,s),this.element=t,this.draw(),n.onChange(()=>this.move()),new ResizeObserver(()=>this.resize()).observe(t),window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change",()=>this.draw())}draw(){this.observer.disconnect();for(let{plot:s}of this.shown)s.destroy();this.shown=[];let t=new Set(this.run.events.map(s=>s.kind)),l=fu.filter(({kind:s})=>t.has(s)).map(({kind:s,label:i})=>g("span.key",{},g(`span.swatch.${s}`,{}),i)),n=g("button",{type:"button",onclick:()=>this.zoom(this.clock.begin,this.clock.end)},"whole flight");this.element.replaceChildren(g("h2",{},"Plots"),g("p.hint",{},"Drag over a plot to zoom all of them; click to move the clock. ",n),g("p.keys-of-bands",{},...l));for(let{title:s,note:i,figures:r}of this.groups){let u=g("div.plots",{});this.element.append(g("details",{open:!0},g("summary",{},s),i?g("p.hint",{},i):null,u));for(let h of r)this.add(u,h)}}add(t,l){let n=g("figure",{},g("figcaption",{},l.title,...this.shadedKeys(l)));t.append(n);let s=l.lines??[],i=et("limit"),r="12px system-ui, sans-serif",u={stroke:et("muted"),font:r,grid:{stroke:et("line"),width:.5},ticks:{stroke:et("line"),width:.5}},h=_=>Array.from(l.t,()=>_),d=l.digits??2,w={width:this.width(),height:ur,scales:{x:{time:!1,range:this.rangeX()},y:{range:(_,E,N)=>hu(l,E,N)}},cursor:{sync:{key:"report",scales:["x",null],setSeries:!1},drag:{x:!0,y:!1,setScale:!1},points:{size:6}},legend:{live:!0},padding:[12,8,0,0],axes:[{...u,label:"time (s)",labelSize:16,labelFont:r,size:28,space:60},{...u,label:l.unit==="1"?"ratio":l.unit,labelSize:16,labelFont:r,size:46}],series:[{label:"time",value:(_,E)=>E===null?"":`${E.toFixed(2)} s`},...l.series.map(({label:_,color:E,dash:N,width:D})=>({label:_,stroke:et(E),width:D??1.5,dash:N,points:{show:!1},value:(T,F)=>F===null?"–":`${F.toFixed(d)} ${l.unit==="1"?"":l.unit}`})),...s.map(({label:_,value:E})=>({label:_?`${_} ${E} ${l.unit==="1"?"":l.unit}`:" ",stroke:i,width:1.5,dash:[7,4],points:{show:!1},value:()=>"",class:_?"line":"unnamed"}))],bands:(l.bands??[]).map(({low:_,high:E,color:N})=>({series:[E,_],fill:`${et(N)}40`})),hooks:{drawClear:[_=>this.background(_,l)],setSelect:[_=>{_.select.width>3&&this.zoom(_.posToVal(_.select.left,"x"),_.posToVal(_.select.left+_.select.width,"x")),_.setSelect({left:0,top:0,width:0,height:0},!1)}]}},y=[Array.from(l.t),...l.series.map(({values:_})=>_),...s.map(({value:_})=>h(_))],p=new Ie(w,y,n),x=g("div.clock-cursor",{});p.over.append(x),p.over.addEventListener("click",_=>{_.detail===1&&this.clock.set(p.posToVal(_.offsetX,"x"))}),p.over.addEventListener("dblclick",()=>this.zoom(this.clock.begin,this.clock.end));let k={plot:p,figure:l,cursor:x,visible:!1};this.shown.push(k),this.observer.observe(n)}shadedKeys(t){return(t.shaded??[]).filter(({spans:l})=>l.length).map(({color:l,label:n})=>g("span.key",{},g("span.swatch",{style:{background:et(l),opacity:"0.35"}}),n))}rangeX(){return()=>this.view??[this.clock.begin,this.clock.end]}zoom(t,l){this.view=[Math.max(t,this.clock.begin),Math.min(l,this.clock.end)];for(let n of this.shown)n.plot.setScale("x",{min:this.view[0],max:this.view[1]}),this.place(n,!1)}background(t,l){let{ctx:n}=t,{left:s,top:i,width:r,height:u}=t.bbox,h=p=>Math.min(Math.max(t.valToPos(p,"x",!0),s),s+r),d=(p,x,k,_,E)=>{let[N,D]=[h(p),h(x)];D<=s||N>=s+r||(n.fillStyle=k,n.fillRect(N,_,Math.max(D-N,1),E))};n.save();let w=this.clock.end;this.run.events.filter(p=>p.kind==="phase").forEach((p,x)=>{x%2&&d(p.start,p.end??w,et("band-phase"),i,u)});for(let{spans:p,color:x}of l.shaded??[]){n.globalAlpha=.2;for(let[k,_]of p)d(k,_,et(x),i,u);n.globalAlpha=1}let y=4*devicePixelRatio;for(let p of this.run.events)p.kind==="fault"?d(p.start,p.end??w,et("band-fault"),i,u):p.kind==="mode"?d(p.start,p.end??w,et("band-mode"),i,y):p.kind==="isolation"?d(p.start,p.end??w,et("band-isolation"),i+y,y):p.kind==="alarm"&&d(p.start,p.start,et("bad"),i,2*y);n.restore()}move(){let t=performance.now(),l=!this.clock.playing||t-this.legendAt>100;l&&(this.legendAt=t);for(let n of this.shown)n.visible&&this.place(n,l)}place({plot:t,figure:l,cursor:n},s){let i=t.valToPos(this.clock.time,"x"),r=i>=-.5&&i<=t.over.clientWidth+.5;n.style.display=r?"":"none",n.style.transform=`translateX(${i}px)`,s&&(t.cursor.left??-10)<0&&t.setLegend({idx:du(l.t,this.clock.time)},!1)}width(){return Math.max(this.element.clientWidth,200)}resize(){let t=this.width();for(let l of this.shown)l.plot.width!==t&&l.plot.setSize({width:t,height:ur}),this.place(l,!1)}};function hu(e,t,l){if(e.range)return[e.range[0]??t,e.range[1]??l];if(t===null||l===null)return[0,1];let[n,s]=e.zero?[Math.min(t,0),Math.max(l,0)]:[t,l],i=(s-n||Math.abs(s)||1)*.06;return[e.zero&&n===0?0:n-i,s+i]}function du(e,t){let[l,n]=[0,e.length-1];for(;n-l>1;){let s=l+n>>1;e[s]<=t?l=s:n=s}return t-e[l]<e[n]-t?l:n}var Fl=class{constructor(){}};var pu=[{name:"phase",kinds:["phase","waypoint"],title:"phases"},{name:"fault",kinds:["fault"],title:"faults"},{name:"alarm",kinds:["isolation","mode","alarm"],title:"alarms"}],fr="M3 1v12l9-6z",mu="M3 1h3v12H3zM8 1h3v12H8z",gu="M2 1h2v12H2zM12 1v12L5 7z",wu="M10 1h2v12h-2zM2 1v12l7-6z";function Is(e){let t=document.createElementNS("http://www.w3.org/2000/svg","svg");t.setAttribute("viewBox","0 0 14 14"),t.setAttribute("class","icon");let l=document.createElementNS("http://www.w3.org/2000/svg","path");return l.setAttribute("d",e),t.append(l),t}function hr(e,t){let{begin:l,end:n}=e.meta,s=Math.max(n-l,1e-9),i=x=>`${100*(Math.min(Math.max(x,l),n)-l)/s}%`,r=pu.map(({name:x,kinds:k,title:_})=>{let E=e.events.filter(D=>k.includes(D.kind));if(!E.length)return null;let N=E.map(D=>{let T=D.end===null&&!["isolation","fault"].includes(D.kind),F=T?D.start:D.end??n;return g(`button.band.${D.kind}${T?".instant":""}`,{type:"button",title:bu(D),tabIndex:-1,style:{left:i(D.start),width:T?"":`calc(${i(F)} - ${i(D.start)})`},onclick:()=>t.set(D.start)},D.kind==="phase"&&(F-D.start)/s>.008*D.text.length?D.text:"")});return g("div.lane",{},g("span.lane-name",{},_),g(`div.lane-track.${x}`,{},...N))}),u=g("input",{type:"range",id:"slider",min:String(l),max:String(n),step:"any","aria-label":"time (s)",oninput:()=>t.set(Number(u.value))}),h=(x,k,_)=>g("button",{type:"button","aria-label":k,title:k,onclick:_},x),d=h(Is(fr),"play or pause (space)",()=>t.toggle()),w=g("span.speed",{}),y=g("output.time",{id:"time"}),p=g("div.controls",{},h(Is(gu),"to the start (home)",()=>t.set(l)),d,h(Is(wu),"to the end (end)",()=>t.set(n)),h("−","slower (-)",()=>t.changeSpeed(-1)),w,h("+","faster (+)",()=>t.changeSpeed(1)),y,g("span.keys",{},"keys: space, ← →, + −, home, end"));return t.onChange(()=>{u.value=String(t.time),d.firstElementChild.firstElementChild.setAttribute("d",t.playing?mu:fr),w.textContent=`${t.speed}×`,y.textContent=`${t.time.toFixed(2)} s of ${n.toFixed(1)} s`}),yu(e,t),g("section",{id:"timeline"},...r,g("div.lane",{},g("span.lane-name",{},"time"),u),p)}function bu(e){return`${e.end===null?`${e.start.toFixed(2)} s`:`${e.start.toFixed(2)} to ${e.end.toFixed(2)} s`}: ${e.source==="team"?"":`${e.source}: `}${e.text}`}function yu(e,t){let{t:l}=e.flown("position"),n=i=>{let r=0,u=l.length;for(;u-r>1;){let h=r+u>>1;l[h]<=t.time+1e-9?r=h:u=h}t.pause(),t.set(l[Math.min(Math.max(r+i,0),l.length-1)])},s={" ":()=>t.toggle(),ArrowRight:i=>i.shiftKey?t.set(t.time+1):n(1),ArrowLeft:i=>i.shiftKey?t.set(t.time-1):n(-1),"+":()=>t.changeSpeed(1),"=":()=>t.changeSpeed(1),"-":()=>t.changeSpeed(-1),Home:()=>t.set(t.begin),End:()=>t.set(t.end)};document.addEventListener("keydown",i=>{let r=i.target;if(!(r instanceof HTMLInputElement&&r.type!=="range"||i.ctrlKey||i.metaKey||i.altKey||!(i.key in s))){if(i.key===" "&&r.matches("button, summary")){if(r.matches(":focus-visible"))return;r.blur()}i.preventDefault(),i.stopPropagation(),s[i.key](i)}},{capture:!0})}var Hs=document.getElementById("page");async function vu(){let[e,t]=await ko(document),l=new gl(e.meta.begin,e.meta.end),n=g("section",{id:"scene","aria-label":"scene"}),s=g("section",{id:"plots"});Hs.replaceChildren(g("header",{},No(e)),g("div.top",{},Fo(e,l),n),hr(e,l),Ro(e,t)??"",Mo(e,l),s);let i=null;try{i=new Fl(n,e,l,t)}catch(r){console.warn(r),n.replaceChildren(g("p.failed",{},`The scene cannot be shown: ${r.message} (it needs WebGL).`)),n.classList.add("absent")}Object.assign(window,{report:{run:e,ghost:t,clock:l,scene:i,plots:new Nl(s,e,l,t)}}),l.set(e.clearance?.time??e.meta.begin)}async function _u(e){let t=JSON.parse(e.textContent??"");Hs.replaceChildren(...vo(t)),Object.assign(window,{report:{campaign:t}})}var dr=document.querySelector("script.campaign");(dr?_u(dr):vu()).catch(e=>{throw Hs.replaceChildren(g("p.failed",{},`The page cannot be shown: ${e.message}`)),e});
+function V(i,t={},...e){let[n,...s]=i.split("."),r=document.createElement(n);s.length&&(r.className=s.join(" "));for(let[o,a]of Object.entries(t))o.startsWith("on")?r.addEventListener(o.slice(2),a):o.includes("-")?r.setAttribute(o,a):o==="style"?Object.assign(r.style,a):r[o]=a;return r.append(...e.filter(o=>o!=null&&o!==!1)),r}function Sn(i){return getComputedStyle(document.documentElement).getPropertyValue(`--${i}`).trim()}function ge(i,t=2){return i==null||!Number.isFinite(i)?"not known":i.toFixed(t)}function xa(i,t){let e=V("button",{type:"button",title:i},t);return e.addEventListener("click",async()=>{try{await navigator.clipboard.writeText(i)}catch{let n=V("textarea",{value:i});document.body.append(n),n.select(),document.execCommand("copy"),n.remove()}e.textContent="copied",setTimeout(()=>{e.textContent=t},1500)}),e}var Mf=["collided","lost","failed","aborted","interrupted","completed"],Sf=[["clearance_min_m","Least clearance","m",2],["uav_separation_min_m","Distance between UAVs","m",2],["tilt_max_deg","Largest payload angle","°",1],["position_rmse_m","Position error, RMS","m",3],["delay_s","Delay","s",1],["detected_s","Time to the first alarm","s",2],["touchdown_mps","Touchdown speed","m/s",2]],kc=24,Hs=i=>i.passed==="True",ni=(i,t)=>i[t]===void 0||i[t]===""?NaN:Number(i[t]);function bf({name:i,flights:t}){let e=t.filter(Hs).length,n=e===t.length?"good":"bad",s=V("div.scroll.tall",{}),r=V("p.hint",{}),o=(c,u)=>{s.replaceChildren(J0(c));let d=c.length===t.length;r.replaceChildren(`${c.length} flights${u?`, ${u}`:""}, the worst first. `),d||r.append(V("button",{type:"button",onclick:()=>o(t,"")},"show all"))};o(t,"");let a=new Set(t.map(c=>c.level)),l=t.some(c=>c.fault)&&a.size>0;return[V("header",{},V("h1",{},i,V(`span.badge.${n}`,{},`${n==="good"?"✓":"✗"} ${e} of ${t.length} passed`))),V("section",{},V("h2",{},l?"Faults and severities":"Kinds"),l?$0(t,o):Z0(t,o)),V("section",{},V("h2",{},"Distributions"),V("p.hint",{},V("span.swatch.passed",{})," passed  ",V("span.swatch.not",{})," not passed"),V("div.histograms",{},...Sf.map(c=>K0(t,...c)))),V("section",{id:"flights"},V("h2",{},"Flights"),r,s)]}function wf(i,t,e,n){let s=i.filter(Hs).length,r=s===i.length?"good":s===0?"bad":"mixed",o=Ef(i)[0],a=o.outcome==="completed"?"":`worst: ${o.outcome}`;return V("td",{},V(`button.cell.${r}`,{type:"button",onclick:()=>{e(i,n),document.getElementById("flights").scrollIntoView()}},t?V("span",{},t):null,V("strong",{},`${s} of ${i.length}`),a?V("span",{},a):null))}function $0(i,t){let e=[...new Set(i.map(o=>o.fault))],n=Math.max(...i.map(o=>Number(o.level))),s=e.map(o=>{let a=i.filter(c=>c.fault===o),l=Array.from({length:n},(c,u)=>{let d=a.filter(h=>Number(h.level)===u+1);return d.length?wf(d,d[0].severity,t,`${o}, ${d[0].severity}`):V("td",{})});return V("tr",{},V("th",{scope:"row"},o),...l)}),r=Array.from({length:n},(o,a)=>V("th",{},`severity ${a+1}`));return V("div.scroll.tall",{},V("table.matrix",{},V("thead",{},V("tr",{},V("th",{},"fault"),...r)),V("tbody",{},...s)))}function Z0(i,t){let n=[...new Set(i.map(s=>[s.variant,s.kind].filter(Boolean).join(", ")))].map(s=>{let r=i.filter(l=>[l.variant,l.kind].filter(Boolean).join(", ")===s),o=r.filter(l=>ni(l,"contacts")>0).length,a=r.map(l=>ni(l,"clearance_min_m")).filter(Number.isFinite);return V("tr",{},V("th",{scope:"row"},s||"all"),wf(r,"",t,s),V("td.number",{},`${o} with contacts`),V("td.number",{},a.length?`least clearance ${ge(Math.min(...a))} m`:""))});return V("div.scroll.tall",{},V("table.matrix",{},V("tbody",{},...n)))}function Ef(i){let t=e=>Number.isFinite(e)?e:1/0;return[...i].sort((e,n)=>Number(Hs(e))-Number(Hs(n))||Mf.indexOf(e.outcome)-Mf.indexOf(n.outcome)||t(ni(e,"clearance_min_m"))-t(ni(n,"clearance_min_m"))||t(-ni(e,"tilt_max_deg"))-t(-ni(n,"tilt_max_deg")))}function J0(i){let t=Sf.filter(([s])=>i.some(r=>Number.isFinite(ni(r,s)))).slice(0,5),e=Ef(i).map(s=>{let r=s.page?V("a",{href:s.page},s.name):s.name,o=[s.failures,s.reason].filter(Boolean).join(": ");return V("tr",{},V("td",{},r),V(`td.${Hs(s)?"held":"missed"}`,{},Hs(s)?"✓ passed":"✗ not passed"),V("td",{},s.outcome),...t.map(([a,,,l])=>V("td.number",{},Number.isFinite(ni(s,a))?ge(ni(s,a),l):"–")),V("td.text",{},o),V("td",{},s.replay?xa(s.replay,"copy command"):""))}),n=["flight","","outcome",...t.map(([,s,r])=>`${s} (${r})`),"why not","again"];return V("table.flights",{},V("thead",{},V("tr",{},...n.map(s=>V("th",{},s)))),V("tbody",{},...e))}function K0(i,t,e,n,s){let r=i.filter(g=>Number.isFinite(ni(g,t)));if(r.length<2)return null;let o=r.map(g=>ni(g,t)).sort((g,_)=>g-_),[a,l]=[o[0],o[o.length-1]],c=l-a||1,u=Array.from({length:kc},()=>[0,0]);for(let g of r){let _=Math.min(Math.floor((ni(g,t)-a)/c*kc),kc-1);u[_][Hs(g)?1:0]+=1}let d=Math.max(...u.map(([g,_])=>g+_)),h=u.map(([g,_])=>V("span.bar",{title:`${_} passed, ${g} not`},V("span.bar-good",{style:{height:`${100*_/d}%`}}),V("span.bar-bad",{style:{height:`${100*g/d}%`}}))),f=o[Math.floor(o.length/2)];return V("figure.histogram",{},V("figcaption",{},`${e} (${n})`),V("div.bars",{},...h),V("div.range",{},V("span",{},ge(a,s)),V("span",{},`median ${ge(f,s)}`),V("span",{},ge(l,s))))}var Vc=[.1,.25,.5,1,2,4,8,16],ya=class{constructor(t,e){this.begin=t,this.end=e,this.time=t,this.speed=1,this.playing=!1,this.listeners=[],this.shown=0}onChange(t){this.listeners.push(t),t(this)}set(t){this.time=Math.min(Math.max(t,this.begin),this.end),this.changed()}play(){this.playing||(this.time>=this.end&&(this.time=this.begin),this.playing=!0,this.shown=performance.now(),this.changed(),requestAnimationFrame(t=>this.frame(t)))}pause(){this.playing=!1,this.changed()}toggle(){this.playing?this.pause():this.play()}changeSpeed(t){let e=Vc.indexOf(this.speed)+t;this.speed=Vc[Math.min(Math.max(e,0),Vc.length-1)],this.changed()}frame(t){if(!this.playing)return;let e=Math.max(0,t-this.shown)/1e3;this.shown=t,this.time=Math.min(this.time+e*this.speed,this.end),this.time>=this.end&&(this.playing=!1),this.changed(),requestAnimationFrame(n=>this.frame(n))}changed(){for(let t of this.listeners)t(this)}};var Hc=class{constructor(t,e,n,s,r,o){this.name=t,this.t=e,this.columns=n,this.unit=s,this.shape=r,this.series=o,this.isQuaternion=n.join("")==="wxyz",this.last=0}rowAt(t){let{t:e}=this,n=this.last<e.length&&e[this.last]<=t?this.last:0;for(let s=0;s<8&&n+1<e.length&&e[n+1]<=t;s+=1)n+=1;if(n+1<e.length&&e[n+1]<=t){let s=e.length;for(;s-n>1;){let r=n+s>>1;e[r]<=t?n=r:s=r}}return this.last=n,n}row(t){return this.series.map(e=>e[t])}path(t){let e=this.row(this.rowAt(t)),n=[];for(let s=0;s+2<e.length;s+=3)Number.isFinite(e[s])&&n.push(e.slice(s,s+3));return n}at(t){let e=this.rowAt(t),{t:n}=this;if(e+1>=n.length||t<=n[e])return this.row(e);let s=(t-n[e])/(n[e+1]-n[e]),r=this.row(e),o=this.row(e+1);return this.isQuaternion?j0(r,o,s):r.map((a,l)=>Number.isNaN(o[l])?a:a+s*(o[l]-a))}};function j0(i,t,e){let n=i[0]*t[0]+i[1]*t[1]+i[2]*t[2]+i[3]*t[3],s=n<0?-1:1;n=Math.min(Math.abs(n),1);let r=Math.acos(n),o=1-e,a=e;r>.001&&(o=Math.sin((1-e)*r)/Math.sin(r),a=Math.sin(e*r)/Math.sin(r));let l=i.map((u,d)=>o*u+s*a*t[d]),c=Math.hypot(...l);return l.map(u=>u/c)}function Tf([i,t,e,n]){let s=180/Math.PI,r=Math.max(-1,Math.min(1,2*(i*e-n*t)));return[Math.atan2(2*(i*t+e*n),1-2*(t*t+e*e))*s,Math.asin(r)*s,Math.atan2(2*(i*n+t*e),1-2*(e*e+n*n))*s]}var Gc=class{constructor(t,e){this.header=t,this.meta=t.meta,this.events=t.events,this.obstacles=t.obstacles,this.tracks=t.tracks,this.standing=t.standing,this.clearance=t.clearance,this.blob=e,this.channels=new Map,this.times=new Map}has(t){return t in this.header.channels}names(t){return Object.keys(this.header.channels).filter(e=>e.startsWith(t))}channel(t){let e=this.header.channels[t];if(!e)return null;let n=this.channels.get(t);if(!n){let s=t_(this.blob,e.values);n=new Hc(t,this.time(e.t),e.columns,e.unit,e.values.shape,s),this.channels.set(t,n)}return n}flown(t){return this.channel(`${this.meta.source}.payload.${t}`)}time(t){let e=this.times.get(t.offset);return e||(e=Q0(this.blob,t),this.times.set(t.offset,e)),e}};function Q0(i,t){let e=new Int32Array(i,t.offset,t.shape[0]),n=new Float64Array(e.length),s=t.first;for(let r=0;r<e.length;r+=1)s+=e[r],n[r]=s/1e6;return n}function t_(i,t){let e=t.shape[0],n=t.shape.slice(1).reduce((r,o)=>r*o,1),s=[];for(let r=0;r<n;r+=1){if(t.dtype==="float32"){s.push(new Float32Array(i,t.offset+4*e*r,e));continue}let o=new Uint16Array(i,t.offset+2*e*r,e),a=new Float32Array(e),l=0;for(let c=0;c<e;c+=1)l=l+o[c]&65535,a[c]=l===65535?NaN:t.first[r]+t.scale[r]*l;s.push(a)}return s}async function e_(i){let t=Uint8Array.from(atob(i.trim()),n=>n.charCodeAt(0)),e=new Blob([t]).stream().pipeThrough(new DecompressionStream("deflate"));return new Response(e).arrayBuffer()}async function Af(i){let t=[...i.querySelectorAll("script.run-header")],e=[...i.querySelectorAll("script.run-blob")];return Promise.all(t.map(async(n,s)=>{let r=await e_(e[s].textContent??"");return e[s].textContent="",new Gc(JSON.parse(n.textContent??""),r)}))}var n_={phase:"phase",mode:"mode",fault:"fault",alarm:"alarm",isolation:"isolated",waypoint:"waypoint"};function Cf(i,t){let e=i.events.map(r=>({row:V(`tr.event.${r.kind}`,{onclick:()=>t.set(r.start)},V("td.number",{},V("button.link",{type:"button"},`${r.start.toFixed(2)} s`)),V("td",{},V(`span.tag.${r.kind}`,{},n_[r.kind]??r.kind)),V("td",{},r.source),V("td.text",{},r.text+(r.end!==null&&r.kind==="fault"?`, to ${r.end.toFixed(2)} s`:""))),event:r})),n=-1;t.onChange(()=>{let r=-1;for(;r+1<e.length&&e[r+1].event.start<=t.time+1e-6;)r+=1;r!==n&&(e[n]?.row.classList.remove("current"),e[r]?.row.classList.add("current"),n=r)});let s=["time","kind","source","event"].map(r=>V("th",{},r));return V("section",{id:"events"},V("h2",{},"Events"),e.length?V("div.scroll",{},V("table",{},V("thead",{},V("tr",{},...s)),V("tbody",{},...e.map(({row:r})=>r)))):V("p",{},"None is on record."))}var i_=.1,eT=180/Math.PI;function Wc(i,t,e){let n=new Array(e.length).fill(null);if(i.length===0)return n;let s=0;for(let r=0;r<e.length;r+=1){let o=e[r];if(o<i[0]-1e-6||o>i[i.length-1]+1e-6)continue;for(;s+1<i.length&&i[s+1]<=o;)s+=1;let a=t[s];if(s+1<i.length&&o>i[s]){if(i[s+1]-i[s]>1)continue;a+=(o-i[s])/(i[s+1]-i[s])*(t[s+1]-t[s])}Number.isFinite(a)&&(n[r]=a)}return n}function Ye(i,t){return i.series.map(e=>Wc(i.t,e,t))}function Co(i,t){return i[0].map((e,n)=>{let s=0;for(let r=0;r<3;r+=1){if(i[r][n]===null||t[r][n]===null)return null;s+=(i[r][n]-t[r][n])**2}return Math.sqrt(s)})}function Xc(i){let t=[0,1,2].map(()=>new Float32Array(i.t.length));for(let e=0;e<i.t.length;e+=1){let n=Tf(i.row(e));for(let s=0;s<3;s+=1)t[s][e]=n[s]}return t}function va(i){let t=i.flown("position"),e=i.channel("reference.position");if(!t||!e)return null;let n=i.channel("plan.position"),{t:s}=t,[r,o]=[Ye(t,s),Ye(e,s)],a=n?Ye(n,s):o,l=Co(a,o),c=Co(r,a),u=Co(r,o),d=h=>h.reduce((f,g)=>g!==null&&g>(f??-1)?g:f,null);return{t:s,error:c,deviation:u,avoiding:n?Ma(s,l.map(h=>h!==null&&h>i_)):[],errorMax:d(c),deviationMax:d(n?u.map((h,f)=>c[f]===null?null:h):u)}}function Rf(i){let[t,e]=[0,0];for(let n of i)n!==null&&(t+=n*n,e+=1);return e?Math.sqrt(t/e):null}function Ma(i,t){let e=[];for(let n=0;n<i.length;n+=1){if(!t[n])continue;let s=i[n];for(;n+1<i.length&&t[n+1];)n+=1;e.push([s,i[Math.min(n+1,i.length-1)]])}return e}function qc(i,t){let e=t.source.split(", "),n=(t.end??i.meta.end)+5;return i.events.filter(s=>(s.kind==="alarm"||s.kind==="isolation")&&s.start>=t.start&&s.start<=n&&(e.includes(s.source)||t.source==="all vehicles"||s.source==="team"))}var s_={completed:"Every waypoint and the landing were reached, and the payload was set down.",interrupted:"The user ended the flight; the payload was set down.",aborted:"A failsafe ended the flight early, and the payload was set down.",failed:"A waypoint or the landing was missed, or the payload was not set down safely.",lost:"The records end without the vehicles being known to be on the ground.",collided:"Something touched: a vehicle or the payload came into contact.","cut off":"The records end before the flight does."},Pf={position_rmse:["position error, root mean square","m","≤",3],payload_tilt_deg:["largest payload angle","°","≤",1],clearance:["clearance to obstacles and fence","m","≥",2],uav_separation:["distance between two UAVs","m","≥",2],touchdown_speed:["touchdown speed","m/s","≤",2],arrival:["distance from waypoints and landing place","m","≤",2]};function If(i){let{outcome:t,summary:e}=i.meta;if(["failed","lost","collided"].includes(t))return"bad";let n=Object.values(e.limits??{}).every(s=>s.held);return t==="completed"&&n?"good":"warning"}function Lf(i){let{meta:t}=i,n=[t.outcome==="aborted"&&!t.summary.duration_s?"The flight was refused before take-off.":s_[t.outcome]??""];t.reason&&n.push(`Reason: ${t.reason}.`);let s=t.summary.duration_s,r=`${t.vehicles} vehicles carried the payload`;return s&&n.push(`${r} for ${ge(s,0)} s${t.seed===null?"":` (seed ${t.seed})`}.`),t.source==="estimate"&&n.push("No truth is on record: all that is shown is the estimate of the ground, which can be wrong."),n}function Df(i){let{summary:t,margin:e}=i.meta,n=[],s=t.contacts;s!=null&&n.push(s===0?"Nothing touched.":`There were ${s} contacts.`);let r=i.clearance;if(r){let a=t.limits?.clearance,l=a?a.limit:e,c=r.min-l,u=a?`the limit of ${ge(l)} m`:`the margin of ${ge(l)} m that plans keep`,d=`“${r.obstacle}”, at ${ge(r.time,1)} s`;if(r.min<=1e-6)n.push(`The formation met ${d}.`);else{let h=`${ge(Math.abs(c))} m ${c>=0?"more":"LESS"} than ${u}`;n.push(`The formation's hull kept at least ${ge(r.min)} m from ${d}: ${h}.`)}}else i.meta.source==="truth"&&n.push("There was no obstacle or fence to keep clear of.");Number.isFinite(t.uav_separation_min_m)&&t.uav_separation_min_m!==null&&n.push(`Two UAVs came as near as ${ge(t.uav_separation_min_m)} m, between their centres.`);let o=t.safety;if(o&&o.steps){let a=100*o.verified_steps/o.steps,l=o.verified_steps===o.steps?"100":ge(Math.min(a,99.9),1);n.push(`${l} % of the plans were verified to keep the margin of ${ge(e)} m by exact distances${o.unverified_reason?`; the worst other did not: ${o.unverified_reason}`:""}.`);for(let[c,u]of Object.entries(o.exceeded??{})){let d=c.replaceAll("_"," ");n.push(`The guarantee did not hold: ${d} was ${ge(u.value,3)} m (limit ${ge(u.limit,3)} m).`)}}return n}function Uf(i){let t=[],e=va(i);if(!e)return["No reference is on record."];let n=e.avoiding.length>0,s=e.t,r=e.deviation.filter((o,a)=>e.error[a]!==null&&!e.avoiding.some(([l,c])=>s[a]>=l&&s[a]<=c));if(i.has("plan.position")){let o=i.meta.summary.safety?.payload_tracking_max_m??e.errorMax;t.push(`Error: the payload kept within ${ge(o,3)} m of its plan.`)}if(n){let o=e.avoiding.reduce((l,[c,u])=>l+u-c,0);t.push(`Wanted: for ${ge(o,0)} s the plan left the mission's reference, to avoid obstacles or to wait for what comes, by up to ${ge(e.deviationMax)} m.`);let a=Rf(r);a!==null&&t.push(`Otherwise the payload was ${ge(a,3)} m (RMS) from the reference.`)}else e.deviationMax!==null&&t.push(`The plan stayed on the mission's reference; the payload was at most ${ge(e.deviationMax,3)} m from it.`);return t}function Nf(i){let t=new Map;for(let e of i.events)e.kind==="mode"&&t.set(e.text,[...t.get(e.text)??[],e]);return[...t].map(([e,n])=>{let s=[...new Set(n.map(({source:o})=>o.replace("vehicle ","")))];return{text:`${s.length>1?`Vehicles ${s.slice(0,-1).join(", ")} and ${s.at(-1)} flew by themselves`:`Vehicle ${s[0]} flew by itself`} from ${ge(n[0].start,1)} s: ${e}.`,event:n[0]}})}function Ff(i){let t=i.events.filter(n=>n.kind==="fault").map(n=>{let s=qc(i,n),[r]=s.filter(c=>c.kind==="alarm"),o=s.filter(c=>c.kind==="isolation"),a=`${ge(n.start,1)} s to ${n.end===null?"the end":`${ge(n.end,1)} s`}`,l=`${n.source}, ${n.text}, ${a}: `;l+=r?`first alarm ${ge(r.start-n.start)} s later (${r.text}, ${r.source})`:"no alarm";for(let c of o)l+=`; ${c.text} of ${c.source} isolated after ${ge(c.start-n.start)} s`;return{text:`${l}.`,event:n}}),e=new Set(i.events.filter(n=>n.kind==="fault").flatMap(n=>qc(i,n)));for(let n of i.events)if(n.kind==="isolation"&&!e.has(n)){let s=n.end===null?"to the end":`until ${ge(n.end,1)} s`,r=`${n.text} of ${n.source} was isolated from ${ge(n.start,1)} s ${s}, without a fault.`;t.push({text:r,event:n})}return t}var r_={good:"✓",warning:"!",bad:"✗"};function Of(i){let{meta:t}=i,e=If(i),n=t.outcome==="completed"&&e!=="good"?", outside its limits":"";return V("h1",{},t.mission,V("span.seed",{},t.seed===null?"":` seed ${t.seed}`),V(`span.badge.${e}`,{},`${r_[e]} ${t.outcome}${n}`))}function Bf(i,t){return V("div.cards",{tabIndex:0,role:"region","aria-label":"what happened"},Ro("What happened",Lf(i)),Ro("Was it safe?",Df(i),i.clearance&&zf(t,i.clearance.time,"show the least clearance")),o_(i,t),Ro("Position: error and avoidance",Uf(i)),a_(i),l_(i.meta.command))}function Ro(i,t,...e){return V("section.card",{},V("h2",{},i),...t.map(n=>V("p",{},n)),...e)}function zf(i,t,e){return V("button.link",{type:"button",onclick:()=>i.set(t)},e)}function o_(i,t){let e=[...Ff(i),...Nf(i)],n=i.events.filter(o=>o.kind==="alarm").length,s=n?`${n} alarms are in the list of events.`:"No alarm was raised.";if(!e.length)return Ro("Faults, failsafes, refused sensors",["No fault was injected and no channel isolated.",s]);let r=e.map(({text:o,event:a})=>V("li",{},`${o} `,zf(t,a.start,"show")));return V("section.card",{},V("h2",{},"Faults, failsafes, refused sensors"),V("ul",{},...r),V("p",{},s))}function a_(i){let t=Object.entries(i.meta.summary.limits??{});if(!t.length)return Ro("Limits",["The mission has no limits on record."]);let e=t.map(([n,{value:s,limit:r,held:o}])=>{let[a,l,c,u]=Pf[n]??[n.replaceAll("_"," "),"","",3],d=s===null?"none":`${ge(s,u)} ${l}`;return V("tr",{},V("td",{},a),V("td.number",{},d),V("td.number",{},`${c} ${r} ${l}`),V(`td.${o?"held":"missed"}`,{},o?"✓ held":"✗ NOT held"))});return V("section.card",{},V("h2",{},"Limits"),V("table",{},V("tbody",{},...e)))}function l_(i){if(!i)return null;let t=xa(i,"copy");return V("section.card",{},V("h2",{},"Fly it again"),V("div.command",{},V("code",{},i),t))}function kf(i,t){if(!t)return null;let[e,n]=[i.meta.summary,t.meta.summary],s=[["position error, RMS (m)",e.position_rmse_m?.total,n.position_rmse_m?.total,3],["least clearance (m)",e.clearance_min_m,n.clearance_min_m,3],["UAV separation (m)",e.uav_separation_min_m,n.uav_separation_min_m,3],["largest roll (°)",e.payload_tilt_max_deg?.roll,n.payload_tilt_max_deg?.roll,2],["largest pitch (°)",e.payload_tilt_max_deg?.pitch,n.payload_tilt_max_deg?.pitch,2],["duration (s)",e.duration_s,n.duration_s,1],["contacts",e.contacts,n.contacts,0],["alarms",e.alarms,n.alarms,0],["control step, median (ms)",e.step_time_ms?.p50,n.step_time_ms?.p50,1]],r=c=>c!=null,o=s.map(([c,u,d,h])=>V("tr",{},V("td",{},c),V("td.number",{},r(u)?ge(u,h):"–"),V("td.number",{},r(d)?ge(d,h):"–"),V("td.number",{},r(u)&&r(d)?(d-u>0?"+":"")+ge(d-u,h):"–"))),a=["",`A: ${i.meta.run}`,`B: ${t.meta.run}`,"B − A"].map(c=>V("th",{},c)),l=V("tr",{},V("td",{},"outcome"),V("td.number",{},i.meta.outcome),V("td.number",{},t.meta.outcome),V("td",{}));return V("section.card",{},V("h2",{},"Two runs"),V("p",{},"A is what the page is about; B is its ghost in the scene and the dashed curves of the plots."),V("div.scroll.flat",{},V("table",{},V("thead",{},V("tr",{},...a)),V("tbody",{},l,...o))))}var rn="u-",c_="uplot",h_=rn+"hz",u_=rn+"vt",d_=rn+"title",f_=rn+"wrap",p_=rn+"under",m_=rn+"over",g_=rn+"axis",Xs=rn+"off",__=rn+"select",x_=rn+"cursor-x",y_=rn+"cursor-y",v_=rn+"cursor-pt",M_=rn+"legend",S_=rn+"live",b_=rn+"inline",w_=rn+"series",E_=rn+"marker",Vf=rn+"label",T_=rn+"value",Lo="width",Do="height",Po="top",Hf="bottom",Tr="left",Yc="right",ch="#000",Gf=ch+"0",Wf="mousemove",Xf="mousedown",$c="mouseup",qf="mouseenter",Yf="mouseleave",$f="dblclick",A_="resize",C_="scroll",Zf="change",Ta="dppxchange",hh="--",Ur=typeof window<"u",Qc=Ur?document:null,Cr=Ur?window:null,R_=Ur?navigator:null,be,Sa;function th(){let i=devicePixelRatio;be!=i&&(be=i,Sa&&nh(Zf,Sa,th),Sa=matchMedia(`(min-resolution: ${be-.001}dppx) and (max-resolution: ${be+.001}dppx)`),qs(Zf,Sa,th),Cr.dispatchEvent(new CustomEvent(Ta)))}function Wn(i,t){if(t!=null){let e=i.classList;!e.contains(t)&&e.add(t)}}function eh(i,t){let e=i.classList;e.contains(t)&&e.remove(t)}function He(i,t,e){i.style[t]=e+"px"}function gi(i,t,e,n){let s=Qc.createElement(i);return t!=null&&Wn(s,t),e?.insertBefore(s,n),s}function ii(i,t){return gi("div",i,t)}var Jf=new WeakMap;function Ni(i,t,e,n,s){let r="translate("+t+"px,"+e+"px)",o=Jf.get(i);r!=o&&(i.style.transform=r,Jf.set(i,r),t<0||e<0||t>n||e>s?Wn(i,Xs):eh(i,Xs))}var Kf=new WeakMap;function jf(i,t,e){let n=t+e,s=Kf.get(i);n!=s&&(Kf.set(i,n),i.style.background=t,i.style.borderColor=e)}var Qf=new WeakMap;function tp(i,t,e,n){let s=t+""+e,r=Qf.get(i);s!=r&&(Qf.set(i,s),i.style.height=e+"px",i.style.width=t+"px",i.style.marginLeft=n?-t/2+"px":0,i.style.marginTop=n?-e/2+"px":0)}var uh={passive:!0},P_={...uh,capture:!0};function qs(i,t,e,n){t.addEventListener(i,e,n?P_:uh)}function nh(i,t,e,n){t.removeEventListener(i,e,uh)}Ur&&th();function _i(i,t,e,n){let s;e=e||0,n=n||t.length-1;let r=n<=2147483647;for(;n-e>1;)s=r?e+n>>1:Xn((e+n)/2),t[s]<i?e=s:n=s;return i-t[e]<=t[n]-i?e:n}function Rr(i,t,e,n){for(let s=n==1?t:e;s>=t&&s<=e;s+=n)if(i[s]!=null)return s;return-1}function I_(i,t,e,n){let s=pe,r=-pe;if(n==1)s=i[t],r=i[e];else if(n==-1)s=i[e],r=i[t];else for(let o=t;o<=e;o++){let a=i[o];a!=null&&(a<s&&(s=a),a>r&&(r=a))}return[s,r]}function L_(i,t,e){let n=pe,s=-pe;for(let r=t;r<=e;r++){let o=i[r];o!=null&&o>0&&(o<n&&(n=o),o>s&&(s=o))}return[n,s]}function Ra(i,t,e,n){let s=ip(i),r=ip(t);i==t&&(s==-1?(i*=e,t/=e):(i/=e,t*=e));let o=e==10?ji:Cp,a=s==1?Xn:si,l=r==1?si:Xn,c=a(o(sn(i))),u=l(o(sn(t))),d=Pr(e,c),h=Pr(e,u);return e==10&&(c<0&&(d=Oe(d,-c)),u<0&&(h=Oe(h,-u))),n||e==2?(i=d*s,t=h*r):(i=Ip(i,d),t=Pa(t,h)),[i,t]}function dh(i,t,e,n){let s=Ra(i,t,e,n);return i==0&&(s[0]=0),t==0&&(s[1]=0),s}var fh=.1,ep={mode:3,pad:fh},No={pad:0,soft:null,mode:0},D_={min:No,max:No};function Aa(i,t,e,n){return Ia(e)?np(i,t,e):(No.pad=e,No.soft=n?0:null,No.mode=n?3:0,np(i,t,D_))}function Me(i,t){return i??t}function U_(i,t,e){for(t=Me(t,0),e=Me(e,i.length-1);t<=e;){if(i[t]!=null)return!0;t++}return!1}function np(i,t,e){let n=e.min,s=e.max,r=Me(n.pad,0),o=Me(s.pad,0),a=Me(n.hard,-pe),l=Me(s.hard,pe),c=Me(n.soft,pe),u=Me(s.soft,-pe),d=Me(n.mode,0),h=Me(s.mode,0),f=t-i,g=ji(f),_=bn(sn(i),sn(t)),m=ji(_),p=sn(m-g);(f<1e-24||p>10)&&(f=0,(i==0||t==0)&&(f=1e-24,d==2&&c!=pe&&(r=0),h==2&&u!=-pe&&(o=0)));let b=f||_||1e3,y=ji(b),v=Pr(10,Xn(y)),N=b*(f==0?i==0?.1:1:r),P=Oe(Ip(i-N,v/10),24),R=i>=c&&(d==1||d==3&&P<=c||d==2&&P>=c)?c:pe,F=bn(a,P<R&&i>=R?R:ri(R,P)),E=b*(f==0?t==0?.1:1:o),M=Oe(Pa(t+E,v/10),24),A=t<=u&&(h==1||h==3&&M>=u||h==2&&M<=u)?u:-pe,W=ri(l,M>A&&t<=A?A:bn(A,M));return F==W&&F==0&&(W=100),[F,W]}var N_=new Intl.NumberFormat(Ur?R_.language:"en-US"),ph=i=>N_.format(i),qn=Math,Ea=qn.PI,sn=qn.abs,Xn=qn.floor,nn=qn.round,si=qn.ceil,ri=qn.min,bn=qn.max,Pr=qn.pow,ip=qn.sign,ji=qn.log10,Cp=qn.log2,F_=(i,t=1)=>qn.sinh(i)*t,Zc=(i,t=1)=>qn.asinh(i/t),pe=1/0;function sp(i){return(ji((i^i>>31)-(i>>31))|0)+1}function ih(i,t,e){return ri(bn(i,t),e)}function fe(i){return typeof i=="function"?i:()=>i}var O_=()=>{},Rp=i=>i,Pp=(i,t)=>t,B_=i=>null,rp=i=>!0,op=(i,t)=>i==t,z_=/\.\d*?(?=9{6,}|0{6,})/gm,Ys=i=>{if(Dp(i)||Ss.has(i))return i;let t=`${i}`,e=t.match(z_);if(e==null)return i;let n=e[0].length-1;if(t.indexOf("e-")!=-1){let[s,r]=t.split("e");return+`${Ys(s)}e${r}`}return Oe(i,n)};function Gs(i,t){return Ys(Oe(Ys(i/t))*t)}function Pa(i,t){return Ys(si(Ys(i/t))*t)}function Ip(i,t){return Ys(Xn(Ys(i/t))*t)}function Oe(i,t=0){if(Dp(i))return i;let e=10**t,n=i*e*(1+Number.EPSILON);return nn(n)/e}var Ss=new Map;function Lp(i){return((""+i).split(".")[1]||"").length}function Oo(i,t,e,n){let s=[],r=n.map(Lp);for(let o=t;o<e;o++){let a=sn(o),l=Oe(Pr(i,o),a);for(let c=0;c<n.length;c++){let u=i==10?+`${n[c]}e${o}`:n[c]*l,d=(o>=0?0:a)+(o>=r[c]?0:r[c]),h=i==10?u:Oe(u,d);s.push(h),Ss.set(h,d)}}return s}var Fo={},mh=[],Ir=[null,null],Ms=Array.isArray,Dp=Number.isInteger,k_=i=>i===void 0;function ap(i){return typeof i=="string"}function Ia(i){let t=!1;if(i!=null){let e=i.constructor;t=e==null||e==Object}return t}function V_(i){return i!=null&&typeof i=="object"}var H_=Object.getPrototypeOf(Uint8Array),Up="__proto__";function Lr(i,t=Ia){let e;if(Ms(i)){let n=i.find(s=>s!=null);if(Ms(n)||t(n)){e=Array(i.length);for(let s=0;s<i.length;s++)e[s]=Lr(i[s],t)}else e=i.slice()}else if(i instanceof H_)e=i.slice();else if(t(i)){e={};for(let n in i)n!=Up&&(e[n]=Lr(i[n],t))}else e=i;return e}function tn(i){let t=arguments;for(let e=1;e<t.length;e++){let n=t[e];for(let s in n)s!=Up&&(Ia(i[s])?tn(i[s],Lr(n[s])):i[s]=Lr(n[s]))}return i}var G_=0,W_=1,X_=2;function q_(i,t,e){for(let n=0,s,r=-1;n<t.length;n++){let o=t[n];if(o>r){for(s=o-1;s>=0&&i[s]==null;)i[s--]=null;for(s=o+1;s<e&&i[s]==null;)i[r=s++]=null}}}function Y_(i,t){if(J_(i)){let o=i[0].slice();for(let a=1;a<i.length;a++)o.push(...i[a].slice(1));return K_(o[0])||(o=Z_(o)),o}let e=new Set;for(let o=0;o<i.length;o++){let l=i[o][0],c=l.length;for(let u=0;u<c;u++)e.add(l[u])}let n=[Array.from(e).sort((o,a)=>o-a)],s=n[0].length,r=new Map;for(let o=0;o<s;o++)r.set(n[0][o],o);for(let o=0;o<i.length;o++){let a=i[o],l=a[0];for(let c=1;c<a.length;c++){let u=a[c],d=Array(s).fill(void 0),h=t?t[o][c]:W_,f=[];for(let g=0;g<u.length;g++){let _=u[g],m=r.get(l[g]);_===null?h!=G_&&(d[m]=_,h==X_&&f.push(m)):d[m]=_}q_(d,f,s),n.push(d)}}return n}var $_=typeof queueMicrotask>"u"?i=>Promise.resolve().then(i):queueMicrotask;function Z_(i){let t=i[0],e=t.length,n=Array(e);for(let r=0;r<n.length;r++)n[r]=r;n.sort((r,o)=>t[r]-t[o]);let s=[];for(let r=0;r<i.length;r++){let o=i[r],a=Array(e);for(let l=0;l<e;l++)a[l]=o[n[l]];s.push(a)}return s}function J_(i){let t=i[0][0],e=t.length;for(let n=1;n<i.length;n++){let s=i[n][0];if(s.length!=e)return!1;if(s!=t){for(let r=0;r<e;r++)if(s[r]!=t[r])return!1}}return!0}function K_(i,t=100){let e=i.length;if(e<=1)return!0;let n=0,s=e-1;for(;n<=s&&i[n]==null;)n++;for(;s>=n&&i[s]==null;)s--;if(s<=n)return!0;let r=bn(1,Xn((s-n+1)/t));for(let o=i[n],a=n+r;a<=s;a+=r){let l=i[a];if(l!=null){if(l<=o)return!1;o=l}}return!0}var Np=["January","February","March","April","May","June","July","August","September","October","November","December"],Fp=["Sunday","Monday","Tuesday","Wednesday","Thursday","Friday","Saturday"];function Op(i){return i.slice(0,3)}var j_=Fp.map(Op),Q_=Np.map(Op),tx={MMMM:Np,MMM:Q_,WWWW:Fp,WWW:j_};function Io(i){return(i<10?"0":"")+i}function ex(i){return(i<10?"00":i<100?"0":"")+i}var nx={YYYY:i=>i.getFullYear(),YY:i=>(i.getFullYear()+"").slice(2),MMMM:(i,t)=>t.MMMM[i.getMonth()],MMM:(i,t)=>t.MMM[i.getMonth()],MM:i=>Io(i.getMonth()+1),M:i=>i.getMonth()+1,DD:i=>Io(i.getDate()),D:i=>i.getDate(),WWWW:(i,t)=>t.WWWW[i.getDay()],WWW:(i,t)=>t.WWW[i.getDay()],HH:i=>Io(i.getHours()),H:i=>i.getHours(),h:i=>{let t=i.getHours();return t==0?12:t>12?t-12:t},AA:i=>i.getHours()>=12?"PM":"AM",aa:i=>i.getHours()>=12?"pm":"am",a:i=>i.getHours()>=12?"p":"a",mm:i=>Io(i.getMinutes()),m:i=>i.getMinutes(),ss:i=>Io(i.getSeconds()),s:i=>i.getSeconds(),fff:i=>ex(i.getMilliseconds())};function gh(i,t){t=t||tx;let e=[],n=/\{([a-z]+)\}|[^{]+/gi,s;for(;s=n.exec(i);)e.push(s[0][0]=="{"?nx[s[1]]:s[0]);return r=>{let o="";for(let a=0;a<e.length;a++)o+=typeof e[a]=="string"?e[a]:e[a](r,t);return o}}var ix=new Intl.DateTimeFormat().resolvedOptions().timeZone;function sx(i,t){let e;return t=="UTC"||t=="Etc/UTC"?e=new Date(+i+i.getTimezoneOffset()*6e4):t==ix?e=i:(e=new Date(i.toLocaleString("en-US",{timeZone:t})),e.setMilliseconds(i.getMilliseconds())),e}var Bp=i=>i%1==0,Ca=[1,2,2.5,5],rx=Oo(10,-32,0,Ca),zp=Oo(10,0,32,Ca),ox=zp.filter(Bp),Ws=rx.concat(zp),_h=`
+`,kp="{YYYY}",lp=_h+kp,Vp="{M}/{D}",Uo=_h+Vp,ba=Uo+"/{YY}",Hp="{aa}",ax="{h}:{mm}",Ar=ax+Hp,cp=_h+Ar,hp=":{ss}",Ae=null;function Gp(i){let t=i*1e3,e=t*60,n=e*60,s=n*24,r=s*30,o=s*365,l=(i==1?Oo(10,0,3,Ca).filter(Bp):Oo(10,-3,0,Ca)).concat([t,t*5,t*10,t*15,t*30,e,e*5,e*10,e*15,e*30,n,n*2,n*3,n*4,n*6,n*8,n*12,s,s*2,s*3,s*4,s*5,s*6,s*7,s*8,s*9,s*10,s*15,r,r*2,r*3,r*4,r*6,o,o*2,o*5,o*10,o*25,o*50,o*100]),c=[[o,kp,Ae,Ae,Ae,Ae,Ae,Ae,1],[s*28,"{MMM}",lp,Ae,Ae,Ae,Ae,Ae,1],[s,Vp,lp,Ae,Ae,Ae,Ae,Ae,1],[n,"{h}"+Hp,ba,Ae,Uo,Ae,Ae,Ae,1],[e,Ar,ba,Ae,Uo,Ae,Ae,Ae,1],[t,hp,ba+" "+Ar,Ae,Uo+" "+Ar,Ae,cp,Ae,1],[i,hp+".{fff}",ba+" "+Ar,Ae,Uo+" "+Ar,Ae,cp,Ae,1]];function u(d){return(h,f,g,_,m,p)=>{let b=[],y=m>=o,v=m>=r&&m<o,N=d(g),P=Oe(N*i,3),R=Jc(N.getFullYear(),y?0:N.getMonth(),v||y?1:N.getDate()),F=Oe(R*i,3);if(v||y){let E=v?m/r:0,M=y?m/o:0,A=P==F?P:Oe(Jc(R.getFullYear()+M,R.getMonth()+E,1)*i,3),W=new Date(nn(A/i)),G=W.getFullYear(),X=W.getMonth();for(let Z=0;A<=_;Z++){let Y=Jc(G+M*Z,X+E*Z,1),nt=Y-d(Oe(Y*i,3));A=Oe((+Y+nt)*i,3),A<=_&&b.push(A)}}else{let E=m>=s?s:m,M=Xn(g)-Xn(P),A=F+M+Pa(P-F,E);b.push(A);let W=d(A),G=W.getHours()+W.getMinutes()/e+W.getSeconds()/n,X=m/n,Z=h.axes[f]._space,Y=p/Z;for(;A=Oe(A+m,i==1?0:3),!(A>_);)if(X>1){let nt=Xn(Oe(G+X,6))%24,at=d(A).getHours()-nt;at>1&&(at=-1),A-=at*n,G=(G+X)%24;let _t=b[b.length-1];Oe((A-_t)/m,3)*Y>=.7&&b.push(A)}else b.push(A)}return b}}return[l,c,u]}var[lx,cx,hx]=Gp(1),[ux,dx,fx]=Gp(.001);Oo(2,-53,53,[1]);function up(i,t){return i.map(e=>e.map((n,s)=>s==0||s==8||n==null?n:t(s==1||e[8]==0?n:e[1]+n)))}function dp(i,t){return(e,n,s,r,o)=>{let a=t.find(g=>o>=g[0])||t[t.length-1],l,c,u,d,h,f;return n.map(g=>{let _=i(g),m=_.getFullYear(),p=_.getMonth(),b=_.getDate(),y=_.getHours(),v=_.getMinutes(),N=_.getSeconds(),P=m!=l&&a[2]||p!=c&&a[3]||b!=u&&a[4]||y!=d&&a[5]||v!=h&&a[6]||N!=f&&a[7]||a[1];return l=m,c=p,u=b,d=y,h=v,f=N,P(_)})}}function px(i,t){let e=gh(t);return(n,s,r,o,a)=>s.map(l=>e(i(l)))}function Jc(i,t,e){return new Date(i,t,e)}function fp(i,t){return t(i)}var mx="{YYYY}-{MM}-{DD} {h}:{mm}{aa}";function pp(i,t){return(e,n,s,r)=>r==null?hh:t(i(n))}function gx(i,t){let e=i.series[t];return e.width?e.stroke(i,t):e.points.width?e.points.stroke(i,t):null}function _x(i,t){return i.series[t].fill(i,t)}var xx={show:!0,live:!0,isolate:!1,mount:O_,markers:{show:!0,width:2,stroke:gx,fill:_x,dash:"solid"},idx:null,idxs:null,values:[]};function yx(i,t){let e=i.cursor.points,n=ii(),s=e.size(i,t);He(n,Lo,s),He(n,Do,s);let r=s/-2;He(n,"marginLeft",r),He(n,"marginTop",r);let o=e.width(i,t,s);return o&&He(n,"borderWidth",o),n}function vx(i,t){let e=i.series[t].points;return e._fill||e._stroke}function Mx(i,t){let e=i.series[t].points;return e._stroke||e._fill}function Sx(i,t){return i.series[t].points.size}var Kc=[0,0];function bx(i,t,e){return Kc[0]=t,Kc[1]=e,Kc}function wa(i,t,e,n=!0){return s=>{s.button==0&&(!n||s.target==t)&&e(s)}}function jc(i,t,e,n=!0){return s=>{(!n||s.target==t)&&e(s)}}var wx={show:!0,x:!0,y:!0,lock:!1,move:bx,points:{one:!1,show:yx,size:Sx,width:0,stroke:Mx,fill:vx},bind:{mousedown:wa,mouseup:wa,click:wa,dblclick:wa,mousemove:jc,mouseleave:jc,mouseenter:jc},drag:{setScale:!0,x:!0,y:!1,dist:0,uni:null,click:(i,t)=>{t.stopPropagation(),t.stopImmediatePropagation()},_x:!1,_y:!1},focus:{dist:(i,t,e,n,s)=>n-s,prox:-1,bias:0},hover:{skip:[void 0],prox:null,bias:0},left:-10,top:-10,idx:null,dataIdx:null,idxs:null,event:null},Wp={show:!0,stroke:"rgba(0,0,0,0.07)",width:2},xh=tn({},Wp,{filter:Pp}),Xp=tn({},xh,{size:10}),qp=tn({},Wp,{show:!1}),yh='12px system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, "Noto Sans", sans-serif, "Apple Color Emoji", "Segoe UI Emoji", "Segoe UI Symbol", "Noto Color Emoji"',Yp="bold "+yh,$p=1.5,mp={show:!0,scale:"x",stroke:ch,space:50,gap:5,size:50,labelGap:0,labelSize:30,labelFont:Yp,side:2,grid:xh,ticks:Xp,border:qp,font:yh,lineGap:$p,rotate:0},Ex="Value",Tx="Time",gp={show:!0,scale:"x",auto:!1,sorted:1,min:pe,max:-pe,idxs:[]};function Ax(i,t,e,n,s){return t.map(r=>r==null?"":ph(r))}function Cx(i,t,e,n,s,r,o){let a=[],l=Ss.get(s)||0;e=o?e:Oe(Pa(e,s),l);for(let c=e;c<=n;c=Oe(c+s,l))a.push(Object.is(c,-0)?0:c);return a}function sh(i,t,e,n,s,r,o){let a=[],l=i.scales[i.axes[t].scale].log,c=l==10?ji:Cp,u=Xn(c(e));s=Pr(l,u),l==10&&(s=Ws[_i(s,Ws)]);let d=e,h=s*l;l==10&&(h=Ws[_i(h,Ws)]);do a.push(d),d=d+s,l==10&&!Ss.has(d)&&(d=Oe(d,Ss.get(s))),d>=h&&(s=d,h=s*l,l==10&&(h=Ws[_i(h,Ws)]));while(d<=n);return a}function Rx(i,t,e,n,s,r,o){let l=i.scales[i.axes[t].scale].asinh,c=n>l?sh(i,t,bn(l,e),n,s):[l],u=n>=0&&e<=0?[0]:[];return(e<-l?sh(i,t,bn(l,-n),-e,s):[l]).reverse().map(h=>-h).concat(u,c)}var Zp=/./,Px=/[12357]/,Ix=/[125]/,_p=/1/,rh=(i,t,e,n)=>i.map((s,r)=>t==4&&s==0||r%n==0&&e.test(s.toExponential()[s<0?1:0])?s:null);function Lx(i,t,e,n,s){let r=i.axes[e],o=r.scale,a=i.scales[o],l=i.valToPos,c=r._space,u=l(10,o),d=l(9,o)-u>=c?Zp:l(7,o)-u>=c?Px:l(5,o)-u>=c?Ix:_p;if(d==_p){let h=sn(l(1,o)-u);if(h<c)return rh(t.slice().reverse(),a.distr,d,si(c/h)).reverse()}return rh(t,a.distr,d,1)}function Dx(i,t,e,n,s){let r=i.axes[e],o=r.scale,a=r._space,l=i.valToPos,c=sn(l(1,o)-l(2,o));return c<a?rh(t.slice().reverse(),3,Zp,si(a/c)).reverse():t}function Ux(i,t,e,n){return n==null?hh:t==null?"":ph(t)}var xp={show:!0,scale:"y",stroke:ch,space:30,gap:5,size:50,labelGap:0,labelSize:30,labelFont:Yp,side:3,grid:xh,ticks:Xp,border:qp,font:yh,lineGap:$p,rotate:0};function Nx(i,t){let e=3+(i||1)*2;return Oe(e*t,3)}function Fx(i,t){let{scale:e,idxs:n}=i.series[0],s=i._data[0],r=i.valToPos(s[n[0]],e,!0),o=i.valToPos(s[n[1]],e,!0),a=sn(o-r),l=i.series[t],c=a/(l.points.space*be);return n[1]-n[0]<=c}var yp={scale:null,auto:!0,sorted:0,min:pe,max:-pe},Jp=(i,t,e,n,s)=>s,vp={show:!0,auto:!0,sorted:0,gaps:Jp,alpha:1,facets:[tn({},yp,{scale:"x"}),tn({},yp,{scale:"y"})]},Mp={scale:"y",auto:!0,sorted:0,show:!0,spanGaps:!1,gaps:Jp,alpha:1,points:{show:Fx,filter:null},values:null,min:pe,max:-pe,idxs:[],path:null,clip:null};function Ox(i,t,e,n,s){return e/10}var Kp={time:!0,auto:!0,distr:1,log:10,asinh:1,min:null,max:null,dir:1,ori:0},Bx=tn({},Kp,{time:!1,ori:1}),Sp={};function jp(i,t){let e=Sp[i];return e||(e={key:i,plots:[],sub(n){e.plots.push(n)},unsub(n){e.plots=e.plots.filter(s=>s!=n)},pub(n,s,r,o,a,l,c){for(let u=0;u<e.plots.length;u++)e.plots[u]!=s&&e.plots[u].pub(n,s,r,o,a,l,c)}},i!=null&&(Sp[i]=e)),e}var Dr=1,oh=2;function $s(i,t,e){let n=i.mode,s=i.series[t],r=n==2?i._data[t]:i._data,o=i.scales,a=i.bbox,l=r[0],c=n==2?r[1]:r[t],u=n==2?o[s.facets[0].scale]:o[i.series[0].scale],d=n==2?o[s.facets[1].scale]:o[s.scale],h=a.left,f=a.top,g=a.width,_=a.height,m=i.valToPosH,p=i.valToPosV;return u.ori==0?e(s,l,c,u,d,m,p,h,f,g,_,Da,Nr,Na,tm,nm):e(s,l,c,u,d,p,m,f,h,_,g,Ua,Fr,Sh,em,im)}function vh(i,t){let e=0,n=0,s=Me(i.bands,mh);for(let r=0;r<s.length;r++){let o=s[r];o.series[0]==t?e=o.dir:o.series[1]==t&&(o.dir==1?n|=1:n|=2)}return[e,n==1?-1:n==2?1:n==3?2:0]}function zx(i,t,e,n,s){let r=i.mode,o=i.series[t],a=r==2?o.facets[1].scale:o.scale,l=i.scales[a];return s==-1?l.min:s==1?l.max:l.distr==3?l.dir==1?l.min:l.max:0}function Qi(i,t,e,n,s,r){return $s(i,t,(o,a,l,c,u,d,h,f,g,_,m)=>{let p=o.pxRound,b=c.dir*(c.ori==0?1:-1),y=c.ori==0?Nr:Fr,v,N;b==1?(v=e,N=n):(v=n,N=e);let P=p(d(a[v],c,_,f)),R=p(h(l[v],u,m,g)),F=p(d(a[N],c,_,f)),E=p(h(r==1?u.max:u.min,u,m,g)),M=new Path2D(s);return y(M,F,E),y(M,P,E),y(M,P,R),M})}function La(i,t,e,n,s,r){let o=null;if(i.length>0){o=new Path2D;let a=t==0?Na:Sh,l=e;for(let d=0;d<i.length;d++){let h=i[d];if(h[1]>h[0]){let f=h[0]-l;f>0&&a(o,l,n,f,n+r),l=h[1]}}let c=e+s-l,u=10;c>0&&a(o,l,n-u/2,c,n+r+u)}return o}function kx(i,t,e){let n=i[i.length-1];n&&n[0]==t?n[1]=e:i.push([t,e])}function Mh(i,t,e,n,s,r,o){let a=[],l=i.length;for(let c=s==1?e:n;c>=e&&c<=n;c+=s)if(t[c]===null){let d=c,h=c;if(s==1)for(;++c<=n&&t[c]===null;)h=c;else for(;--c>=e&&t[c]===null;)h=c;let f=r(i[d]),g=h==d?f:r(i[h]),_=d-s;f=o<=0&&_>=0&&_<l?r(i[_]):f;let p=h+s;g=o>=0&&p>=0&&p<l?r(i[p]):g,g>=f&&a.push([f,g])}return a}function bp(i){return i==0?Rp:i==1?nn:t=>Gs(t,i)}function Qp(i){let t=i==0?Da:Ua,e=i==0?(s,r,o,a,l,c)=>{s.arcTo(r,o,a,l,c)}:(s,r,o,a,l,c)=>{s.arcTo(o,r,l,a,c)},n=i==0?(s,r,o,a,l)=>{s.rect(r,o,a,l)}:(s,r,o,a,l)=>{s.rect(o,r,l,a)};return(s,r,o,a,l,c=0,u=0)=>{c==0&&u==0?n(s,r,o,a,l):(c=ri(c,a/2,l/2),u=ri(u,a/2,l/2),t(s,r+c,o),e(s,r+a,o,r+a,o+l,c),e(s,r+a,o+l,r,o+l,u),e(s,r,o+l,r,o,u),e(s,r,o,r+a,o,c),s.closePath())}}var Da=(i,t,e)=>{i.moveTo(t,e)},Ua=(i,t,e)=>{i.moveTo(e,t)},Nr=(i,t,e)=>{i.lineTo(t,e)},Fr=(i,t,e)=>{i.lineTo(e,t)},Na=Qp(0),Sh=Qp(1),tm=(i,t,e,n,s,r)=>{i.arc(t,e,n,s,r)},em=(i,t,e,n,s,r)=>{i.arc(e,t,n,s,r)},nm=(i,t,e,n,s,r,o)=>{i.bezierCurveTo(t,e,n,s,r,o)},im=(i,t,e,n,s,r,o)=>{i.bezierCurveTo(e,t,s,n,o,r)};function sm(i){return(t,e,n,s,r)=>$s(t,e,(o,a,l,c,u,d,h,f,g,_,m)=>{let{pxRound:p,points:b}=o,y,v;c.ori==0?(y=Da,v=tm):(y=Ua,v=em);let N=Oe(b.width*be,3),P=(b.size-b.width)/2*be,R=Oe(P*2,3),F=new Path2D,E=new Path2D,{left:M,top:A,width:W,height:G}=t.bbox;Na(E,M-R,A-R,W+R*2,G+R*2);let X=Z=>{if(l[Z]!=null){let Y=p(d(a[Z],c,_,f)),nt=p(h(l[Z],u,m,g));y(F,Y+P,nt),v(F,Y,nt,P,0,Ea*2)}};if(r)r.forEach(X);else for(let Z=n;Z<=s;Z++)X(Z);return{stroke:N>0?F:null,fill:F,clip:E,flags:Dr|oh}})}function rm(i){return(t,e,n,s,r,o)=>{n!=s&&(r!=n&&o!=n&&i(t,e,n),r!=s&&o!=s&&i(t,e,s),i(t,e,o))}}var Vx=rm(Nr),Hx=rm(Fr);function om(i){let t=Me(i?.alignGaps,0);return(e,n,s,r)=>$s(e,n,(o,a,l,c,u,d,h,f,g,_,m)=>{let p=o.pxRound,b=pt=>p(d(pt,c,_,f)),y=pt=>p(h(pt,u,m,g)),v,N;c.ori==0?(v=Nr,N=Vx):(v=Fr,N=Hx);let P=c.dir*(c.ori==0?1:-1),R={stroke:new Path2D,fill:null,clip:null,band:null,gaps:null,flags:Dr},F=R.stroke,E=pe,M=-pe,A,W,G,X=b(a[P==1?s:r]),Z=Rr(l,s,r,1*P),Y=Rr(l,s,r,-1*P),nt=b(a[Z]),Q=b(a[Y]),ft=!1;for(let pt=P==1?s:r;pt>=s&&pt<=r;pt+=P){let Zt=b(a[pt]),J=l[pt];Zt==X?J!=null?(W=y(J),E==pe&&(v(F,Zt,W),A=W),E=ri(W,E),M=bn(W,M)):J===null&&(ft=!0):(E!=pe&&(N(F,X,E,M,A,W),G=X),J!=null?(W=y(J),v(F,Zt,W),E=M=A=W):(E=pe,M=-pe,J===null&&(ft=!0)),X=Zt)}E!=pe&&E!=M&&G!=X&&N(F,X,E,M,A,W);let[at,_t]=vh(e,n);if(o.fill!=null||at!=0){let pt=R.fill=new Path2D(F),Zt=o.fillTo(e,n,o.min,o.max,at),J=y(Zt);v(pt,Q,J),v(pt,nt,J)}if(!o.spanGaps){let pt=[];ft&&pt.push(...Mh(a,l,s,r,P,b,t)),R.gaps=pt=o.gaps(e,n,s,r,pt),R.clip=La(pt,c.ori,f,g,_,m)}return _t!=0&&(R.band=_t==2?[Qi(e,n,s,r,F,-1),Qi(e,n,s,r,F,1)]:Qi(e,n,s,r,F,_t)),R})}function Gx(i){let t=Me(i.align,1),e=Me(i.ascDesc,!1),n=Me(i.alignGaps,0),s=Me(i.extend,!1);return(r,o,a,l)=>$s(r,o,(c,u,d,h,f,g,_,m,p,b,y)=>{let v=c.pxRound,{left:N,width:P}=r.bbox,R=at=>v(g(at,h,b,m)),F=at=>v(_(at,f,y,p)),E=h.ori==0?Nr:Fr,M={stroke:new Path2D,fill:null,clip:null,band:null,gaps:null,flags:Dr},A=M.stroke,W=h.dir*(h.ori==0?1:-1);a=Rr(d,a,l,1),l=Rr(d,a,l,-1);let G=F(d[W==1?a:l]),X=R(u[W==1?a:l]),Z=X,Y=X;s&&t==-1&&(Y=N,E(A,Y,G)),E(A,X,G);for(let at=W==1?a:l;at>=a&&at<=l;at+=W){let _t=d[at];if(_t==null)continue;let pt=R(u[at]),Zt=F(_t);t==1?E(A,pt,G):E(A,Z,Zt),E(A,pt,Zt),G=Zt,Z=pt}let nt=Z;s&&t==1&&(nt=N+P,E(A,nt,G));let[Q,ft]=vh(r,o);if(c.fill!=null||Q!=0){let at=M.fill=new Path2D(A),_t=c.fillTo(r,o,c.min,c.max,Q),pt=F(_t);E(at,nt,pt),E(at,Y,pt)}if(!c.spanGaps){let at=[];at.push(...Mh(u,d,a,l,W,R,n));let _t=c.width*be/2,pt=e||t==1?_t:-_t,Zt=e||t==-1?-_t:_t;at.forEach(J=>{J[0]+=pt,J[1]+=Zt}),M.gaps=at=c.gaps(r,o,a,l,at),M.clip=La(at,h.ori,m,p,b,y)}return ft!=0&&(M.band=ft==2?[Qi(r,o,a,l,A,-1),Qi(r,o,a,l,A,1)]:Qi(r,o,a,l,A,ft)),M})}function wp(i,t,e,n,s,r,o=pe){if(i.length>1){let a=null;for(let l=0,c=1/0;l<i.length;l++)if(t[l]!==void 0){if(a!=null){let u=sn(i[l]-i[a]);u<c&&(c=u,o=sn(e(i[l],n,s,r)-e(i[a],n,s,r)))}a=l}}return o}function Wx(i){i=i||Fo;let t=Me(i.size,[.6,pe,1]),e=i.align||0,n=i.gap||0,s=i.radius;s=s==null?[0,0]:typeof s=="number"?[s,0]:s;let r=fe(s),o=1-t[0],a=Me(t[1],pe),l=Me(t[2],1),c=Me(i.disp,Fo),u=Me(i.each,f=>{}),{fill:d,stroke:h}=c;return(f,g,_,m)=>$s(f,g,(p,b,y,v,N,P,R,F,E,M,A)=>{let W=p.pxRound,G=e,X=n*be,Z=a*be,Y=l*be,nt,Q;v.ori==0?[nt,Q]=r(f,g):[Q,nt]=r(f,g);let ft=v.dir*(v.ori==0?1:-1),at=v.ori==0?Na:Sh,_t=v.ori==0?u:(j,et,Nt,Mt,At,Kt,ct)=>{u(j,et,Nt,At,Mt,ct,Kt)},pt=Me(f.bands,mh).find(j=>j.series[0]==g),Zt=pt!=null?pt.dir:0,J=p.fillTo(f,g,p.min,p.max,Zt),ht=W(R(J,N,A,E)),Ot,lt,Ft,Yt=M,Ut=W(p.width*be),Qt=!1,st=null,mt=null,U=null,Vt=null;d!=null&&(Ut==0||h!=null)&&(Qt=!0,st=d.values(f,g,_,m),mt=new Map,new Set(st).forEach(j=>{j!=null&&mt.set(j,new Path2D)}),Ut>0&&(U=h.values(f,g,_,m),Vt=new Map,new Set(U).forEach(j=>{j!=null&&Vt.set(j,new Path2D)})));let{x0:ut,size:Tt}=c;if(ut!=null&&Tt!=null){G=1,b=ut.values(f,g,_,m),ut.unit==2&&(b=b.map(Nt=>f.posToVal(F+Nt*M,v.key,!0)));let j=Tt.values(f,g,_,m);Tt.unit==2?lt=j[0]*M:lt=P(j[0],v,M,F)-P(0,v,M,F),Yt=wp(b,y,P,v,M,F,Yt),Ft=Yt-lt+X}else Yt=wp(b,y,P,v,M,F,Yt),Ft=Yt*o+X,lt=Yt-Ft;Ft<1&&(Ft=0),Ut>=lt/2&&(Ut=0),Ft<5&&(W=Rp);let xt=Ft>0,Jt=Yt-Ft-(xt?Ut:0);lt=W(ih(Jt,Y,Z)),Ot=(G==0?lt/2:G==ft?0:lt)-G*ft*((G==0?X/2:0)+(xt?Ut/2:0));let bt={stroke:null,fill:null,clip:null,band:null,gaps:null,flags:0},C=Qt?null:new Path2D,S=null;if(pt!=null)S=f.data[pt.series[1]];else{let{y0:j,y1:et}=c;j!=null&&et!=null&&(y=et.values(f,g,_,m),S=j.values(f,g,_,m))}let O=nt*lt,tt=Q*lt;for(let j=ft==1?_:m;j>=_&&j<=m;j+=ft){let et=y[j];if(et==null)continue;if(S!=null){let $t=S[j]??0;if(et-$t==0)continue;ht=R($t,N,A,E)}let Nt=v.distr!=2||c!=null?b[j]:j,Mt=P(Nt,v,M,F),At=R(Me(et,J),N,A,E),Kt=W(Mt-Ot),ct=W(bn(At,ht)),wt=W(ri(At,ht)),Xt=ct-wt;if(et!=null){let $t=et<0?tt:O,Rt=et<0?O:tt;Qt?(Ut>0&&U[j]!=null&&at(Vt.get(U[j]),Kt,wt+Xn(Ut/2),lt,bn(0,Xt-Ut),$t,Rt),st[j]!=null&&at(mt.get(st[j]),Kt,wt+Xn(Ut/2),lt,bn(0,Xt-Ut),$t,Rt)):at(C,Kt,wt+Xn(Ut/2),lt,bn(0,Xt-Ut),$t,Rt),_t(f,g,j,Kt-Ut/2,wt,lt+Ut,Xt)}}return Ut>0?bt.stroke=Qt?Vt:C:Qt||(bt._fill=p.width==0?p._fill:p._stroke??p._fill,bt.width=0),bt.fill=Qt?mt:C,bt})}function Xx(i,t){let e=Me(t?.alignGaps,0);return(n,s,r,o)=>$s(n,s,(a,l,c,u,d,h,f,g,_,m,p)=>{let b=a.pxRound,y=nt=>b(h(nt,u,m,g)),v=nt=>b(f(nt,d,p,_)),N,P,R;u.ori==0?(N=Da,R=Nr,P=nm):(N=Ua,R=Fr,P=im);let F=u.dir*(u.ori==0?1:-1);r=Rr(c,r,o,1),o=Rr(c,r,o,-1);let E=y(l[F==1?r:o]),M=E,A=[],W=[];for(let nt=F==1?r:o;nt>=r&&nt<=o;nt+=F)if(c[nt]!=null){let ft=l[nt],at=y(ft);A.push(M=at),W.push(v(c[nt]))}let G={stroke:i(A,W,N,R,P,b),fill:null,clip:null,band:null,gaps:null,flags:Dr},X=G.stroke,[Z,Y]=vh(n,s);if(a.fill!=null||Z!=0){let nt=G.fill=new Path2D(X),Q=a.fillTo(n,s,a.min,a.max,Z),ft=v(Q);R(nt,M,ft),R(nt,E,ft)}if(!a.spanGaps){let nt=[];nt.push(...Mh(l,c,r,o,F,y,e)),G.gaps=nt=a.gaps(n,s,r,o,nt),G.clip=La(nt,u.ori,g,_,m,p)}return Y!=0&&(G.band=Y==2?[Qi(n,s,r,o,X,-1),Qi(n,s,r,o,X,1)]:Qi(n,s,r,o,X,Y)),G})}function qx(i){return Xx(Yx,i)}function Yx(i,t,e,n,s,r){let o=i.length;if(o<2)return null;let a=new Path2D;if(e(a,i[0],t[0]),o==2)n(a,i[1],t[1]);else{let l=Array(o),c=Array(o-1),u=Array(o-1),d=Array(o-1);for(let h=0;h<o-1;h++)u[h]=t[h+1]-t[h],d[h]=i[h+1]-i[h],c[h]=u[h]/d[h];l[0]=c[0];for(let h=1;h<o-1;h++)c[h]===0||c[h-1]===0||c[h-1]>0!=c[h]>0?l[h]=0:(l[h]=3*(d[h-1]+d[h])/((2*d[h]+d[h-1])/c[h-1]+(d[h]+2*d[h-1])/c[h]),isFinite(l[h])||(l[h]=0));l[o-1]=c[o-2];for(let h=0;h<o-1;h++)s(a,i[h]+d[h]/3,t[h]+l[h]*d[h]/3,i[h+1]-d[h]/3,t[h+1]-l[h+1]*d[h]/3,i[h+1],t[h+1])}return a}var ah=new Set;function Ep(){for(let i of ah)i.syncRect(!0)}Ur&&(qs(A_,Cr,Ep),qs(C_,Cr,Ep,!0),qs(Ta,Cr,()=>{xn.pxRatio=be}));var $x=om(),Zx=sm();function Tp(i,t,e,n){return(n?[i[0],i[1]].concat(i.slice(2)):[i[0]].concat(i.slice(1))).map((r,o)=>lh(r,o,t,e))}function Jx(i,t){return i.map((e,n)=>n==0?{}:tn({},t,e))}function lh(i,t,e,n){return tn({},t==0?e:n,i)}function am(i,t,e){return t==null?Ir:[t,e]}var Kx=am;function jx(i,t,e){return t==null?Ir:Aa(t,e,fh,!0)}function lm(i,t,e,n){return t==null?Ir:Ra(t,e,i.scales[n].log,!1)}var Qx=lm;function cm(i,t,e,n){return t==null?Ir:dh(t,e,i.scales[n].log,!1)}var ty=cm;function ey(i,t,e,n,s){let r=bn(sp(i),sp(t)),o=t-i,a=_i(s/n*o,e);do{let l=e[a],c=n*l/o;if(c>=s&&r+(l<5?Ss.get(l):0)<=17)return[l,c]}while(++a<e.length);return[0,0]}function Ap(i){let t,e;return i=i.replace(/(\d+)px/,(n,s)=>(t=nn((e=+s)*be))+"px"),[i,t,e]}function ny(i){i.show&&[i.font,i.labelFont].forEach(t=>{let e=Oe(t[2]*be,1);t[0]=t[0].replace(/[0-9.]+px/,e+"px"),t[1]=e})}function xn(i,t,e){let n={mode:Me(i.mode,1)},s=n.mode;function r(x,w){return((w.distr==3?ji(x>0?x:w.clamp(n,x,w.min,w.max,w.key)):w.distr==4?Zc(x,w.asinh):w.distr==100?w.fwd(x):x)-w._min)/(w._max-w._min)}function o(x,w,I,L){let k=r(x,w);return L+I*(w.dir==-1?1-k:k)}function a(x,w,I,L){let k=r(x,w);return L+I*(w.dir==-1?k:1-k)}function l(x,w,I,L){return w.ori==0?o(x,w,I,L):a(x,w,I,L)}n.valToPosH=o,n.valToPosV=a;let c=!1;n.status=0;let u=n.root=ii(c_);if(i.id!=null&&(u.id=i.id),Wn(u,i.class),i.title){let x=ii(d_,u);x.textContent=i.title}let d=gi("canvas"),h=n.ctx=d.getContext("2d"),f=ii(f_,u);qs("click",f,x=>{x.target===_&&(ze!=vr||Xe!=Mr)&&_n.click(n,x)},!0);let g=n.under=ii(p_,f);f.appendChild(d);let _=n.over=ii(m_,f);i=Lr(i);let m=+Me(i.pxAlign,1),p=bp(m);(i.plugins||[]).forEach(x=>{x.opts&&(i=x.opts(n,i)||i)});let b=i.ms||.001,y=n.series=s==1?Tp(i.series||[],gp,Mp,!1):Jx(i.series||[null],vp),v=n.axes=Tp(i.axes||[],mp,xp,!0),N=n.scales={},P=n.bands=i.bands||[];P.forEach(x=>{x.fill=fe(x.fill||null),x.dir=Me(x.dir,-1)});let R=s==2?y[1].facets[0].scale:y[0].scale,F={axes:D0,series:Ne},E=(i.drawOrder||["axes","series"]).map(x=>F[x]);function M(x){let w=N[x];if(w==null){let I=(i.scales||Fo)[x]||Fo;if(I.from!=null)M(I.from),N[x]=tn({},N[I.from],I,{key:x});else{w=N[x]=tn({},x==R?Kp:Bx,I),w.key=x;let L=w.time,k=w.range,$=Ms(k);if((x!=R||s==2&&!L)&&($&&(k[0]==null||k[1]==null)&&(k={min:k[0]==null?ep:{mode:1,hard:k[0],soft:k[0]},max:k[1]==null?ep:{mode:1,hard:k[1],soft:k[1]}},$=!1),!$&&Ia(k))){let rt=k;k=(dt,vt,Lt)=>vt==null?Ir:Aa(vt,Lt,rt)}w.range=fe(k||(L?Kx:x==R?w.distr==3?Qx:w.distr==4?ty:am:w.distr==3?lm:w.distr==4?cm:jx)),w.auto=fe($?!1:w.auto),w.clamp=fe(w.clamp||Ox),w._min=w._max=null}}}M("x"),M("y"),s==1&&y.forEach(x=>{M(x.scale)}),v.forEach(x=>{M(x.scale)});for(let x in i.scales)M(x);let A=N[R],W=A.distr,G,X;A.ori==0?(Wn(u,h_),G=o,X=a):(Wn(u,u_),G=a,X=o);let Z={};for(let x in N){let w=N[x];(w.min!=null||w.max!=null)&&(Z[x]={min:w.min,max:w.max},w.min=w.max=null)}let Y=i.tzDate||(x=>new Date(nn(x/b))),nt=i.fmtDate||gh,Q=b==1?hx(Y):fx(Y),ft=dp(Y,up(b==1?cx:dx,nt)),at=pp(Y,fp(mx,nt)),_t=[],pt=n.legend=tn({},xx,i.legend),Zt=pt.show,J=pt.markers;pt.idxs=_t,J.width=fe(J.width),J.dash=fe(J.dash),J.stroke=fe(J.stroke),J.fill=fe(J.fill);let ht,Ot,lt,Ft=[],Yt=[],Ut,Qt=!1,st={};if(pt.live){let x=y[1]?y[1].values:null;Qt=x!=null,Ut=Qt?x(n,1,0):{_:0};for(let w in Ut)st[w]=hh}if(Zt)if(ht=gi("table",M_,u),lt=gi("tbody",null,ht),pt.mount(n,ht),Qt){Ot=gi("thead",null,ht,lt);let x=gi("tr",null,Ot);gi("th",null,x);for(var mt in Ut)gi("th",Vf,x).textContent=mt}else Wn(ht,b_),pt.live&&Wn(ht,S_);let U={show:!0},Vt={show:!1};function ut(x,w){if(w==0&&(Qt||!pt.live||s==2))return Ir;let I=[],L=gi("tr",w_,lt,lt.childNodes[w]);Wn(L,x.class),x.show||Wn(L,Xs);let k=gi("th",null,L);if(J.show){let dt=ii(E_,k);if(w>0){let vt=J.width(n,w);vt&&(dt.style.border=vt+"px "+J.dash(n,w)+" "+J.stroke(n,w)),dt.style.background=J.fill(n,w)}}let $=ii(Vf,k);$.textContent=x.label,w>0&&(J.show||($.style.color=x.width>0?J.stroke(n,w):J.fill(n,w)),xt("click",k,dt=>{if(Bt._lock)return;he(dt);let vt=y.indexOf(x);if((dt.ctrlKey||dt.metaKey)!=pt.isolate){let Lt=y.some((Dt,kt)=>kt>0&&kt!=vt&&Dt.show);y.forEach((Dt,kt)=>{kt>0&&Li(kt,Lt?kt==vt?U:Vt:U,!0,je.setSeries)})}else Li(vt,{show:!x.show},!0,je.setSeries)},!1),Yi&&xt(qf,k,dt=>{Bt._lock||(he(dt),Li(y.indexOf(x),br,!0,je.setSeries))},!1));for(var rt in Ut){let dt=gi("td",T_,L);dt.textContent="--",I.push(dt)}return[L,I]}let Tt=new Map;function xt(x,w,I,L=!0){let k=Tt.get(w)||{},$=Bt.bind[x](n,w,I,L);$&&(qs(x,w,k[x]=$),Tt.set(w,k))}function Jt(x,w,I){let L=Tt.get(w)||{};for(let k in L)(x==null||k==x)&&(nh(k,w,L[k]),delete L[k]);x==null&&Tt.delete(w)}let bt=0,C=0,S=0,O=0,tt=0,j=0,et=tt,Nt=j,Mt=S,At=O,Kt=0,ct=0,wt=0,Xt=0;n.bbox={};let $t=!1,Rt=!1,ae=!1,te=!1,Se=!1,B=!1;function Et(x,w,I){(I||x!=n.width||w!=n.height)&&it(x,w),gr(!1),ae=!0,Rt=!0,_r()}function it(x,w){n.width=bt=S=x,n.height=C=O=w,tt=j=0,se(),We();let I=n.bbox;Kt=I.left=Gs(tt*be,.5),ct=I.top=Gs(j*be,.5),wt=I.width=Gs(S*be,.5),Xt=I.height=Gs(O*be,.5)}let ot=3;function It(){let x=!1,w=0;for(;!x;){w++;let I=I0(w),L=L0(w);x=w==ot||I&&L,x||(it(n.width,n.height),Rt=!0)}}function Pt({width:x,height:w}){Et(x,w)}n.setSize=Pt;function se(){let x=!1,w=!1,I=!1,L=!1;v.forEach((k,$)=>{if(k.show&&k._show){let{side:rt,_size:dt}=k,vt=rt%2,Lt=k.label!=null?k.labelSize:0,Dt=dt+Lt;Dt>0&&(vt?(S-=Dt,rt==3?(tt+=Dt,L=!0):I=!0):(O-=Dt,rt==0?(j+=Dt,x=!0):w=!0))}}),Pi[0]=x,Pi[1]=I,Pi[2]=w,Pi[3]=L,S-=Ii[1]+Ii[3],tt+=Ii[3],O-=Ii[2]+Ii[0],j+=Ii[0]}function We(){let x=tt+S,w=j+O,I=tt,L=j;function k($,rt){switch($){case 1:return x+=rt,x-rt;case 2:return w+=rt,w-rt;case 3:return I-=rt,I+rt;case 0:return L-=rt,L+rt}}v.forEach(($,rt)=>{if($.show&&$._show){let dt=$.side;$._pos=k(dt,$._size),$.label!=null&&($._lpos=k(dt,$.labelSize))}})}let Bt=n.cursor=tn({},wx,{drag:{y:s==2}},i.cursor);if(Bt.dataIdx==null){let x=Bt.hover,w=x.skip=new Set(x.skip??[]);w.add(void 0);let I=x.prox=fe(x.prox),L=x.bias??=0;Bt.dataIdx=(k,$,rt,dt)=>{if($==0)return rt;let vt=rt,Lt=I(k,$,rt,dt)??pe,Dt=Lt>=0&&Lt<pe,kt=A.ori==0?S:O,ie=Bt.left,Fe=t[0],me=t[$];if(w.has(me[rt])){vt=null;let ue=null,re=null,qt;if(L==0||L==-1)for(qt=rt;ue==null&&qt-- >0;)w.has(me[qt])||(ue=qt);if(L==0||L==1)for(qt=rt;re==null&&qt++<me.length;)w.has(me[qt])||(re=qt);if(ue!=null||re!=null)if(Dt){let Ie=ue==null?-1/0:G(Fe[ue],A,kt,0),Je=re==null?1/0:G(Fe[re],A,kt,0),Ze=ie-Ie,Ve=Je-ie;Ze<=Ve?Ze<=Lt&&(vt=ue):Ve<=Lt&&(vt=re)}else vt=re==null?ue:ue==null?re:rt-ue<=re-rt?ue:re}else Dt&&sn(ie-G(Fe[rt],A,kt,0))>Lt&&(vt=null);return vt}}let he=x=>{Bt.event=x};Bt.idxs=_t,Bt._lock=!1;let Pe=Bt.points;Pe.show=fe(Pe.show),Pe.size=fe(Pe.size),Pe.stroke=fe(Pe.stroke),Pe.width=fe(Pe.width),Pe.fill=fe(Pe.fill);let un=n.focus=tn({},i.focus||{alpha:.3},Bt.focus),Yi=un.prox>=0,$i=Yi&&Pe.one,Ke=[],Ri=[],Zi=[];function So(x,w){let I=Pe.show(n,w);if(I)return Wn(I,v_),Wn(I,x.class),Ni(I,-10,-10,S,O),_.insertBefore(I,Ke[w]),I}function Fs(x,w){if(s==1||w>0){let I=s==1&&N[x.scale].time,L=x.value;x.value=I?ap(L)?pp(Y,fp(L,nt)):L||at:L||Ux,x.label=x.label||(I?Tx:Ex)}if($i||w>0){x.width=x.width==null?1:x.width,x.paths=x.paths||$x||B_,x.fillTo=fe(x.fillTo||zx),x.pxAlign=+Me(x.pxAlign,m),x.pxRound=bp(x.pxAlign),x.stroke=fe(x.stroke||null),x.fill=fe(x.fill||null),x._stroke=x._fill=x._paths=x._focus=null;let I=Nx(bn(1,x.width),1),L=x.points=tn({},{size:I,width:bn(1,I*.2),stroke:x.stroke,space:I*2,paths:Zx,_stroke:null,_fill:null},x.points);L.show=fe(L.show),L.filter=fe(L.filter),L.fill=fe(L.fill),L.stroke=fe(L.stroke),L.paths=fe(L.paths),L.pxAlign=x.pxAlign}if(Zt){let I=ut(x,w);Ft.splice(w,0,I[0]),Yt.splice(w,0,I[1]),pt.values.push(null)}if(Bt.show){_t.splice(w,0,null);let I=null;$i?w==0&&(I=So(x,w)):w>0&&(I=So(x,w)),Ke.splice(w,0,I),Ri.splice(w,0,0),Zi.splice(w,0,0)}mn("addSeries",w)}function ha(x,w){w=w??y.length,x=s==1?lh(x,w,gp,Mp):lh(x,w,{},vp),y.splice(w,0,x),Fs(y[w],w)}n.addSeries=ha;function mr(x){if(y.splice(x,1),Zt){pt.values.splice(x,1),Yt.splice(x,1);let w=Ft.splice(x,1)[0];Jt(null,w.firstChild),w.remove()}Bt.show&&(_t.splice(x,1),Ke.splice(x,1)[0].remove(),Ri.splice(x,1),Zi.splice(x,1)),mn("delSeries",x)}n.delSeries=mr;let Pi=[!1,!1,!1,!1];function ua(x,w){if(x._show=x.show,x.show){let I=x.side%2,L=N[x.scale];L==null&&(x.scale=I?y[1].scale:R,L=N[x.scale]);let k=L.time;x.size=fe(x.size),x.space=fe(x.space),x.rotate=fe(x.rotate),Ms(x.incrs)&&x.incrs.forEach(rt=>{!Ss.has(rt)&&Ss.set(rt,Lp(rt))}),x.incrs=fe(x.incrs||(L.distr==2?ox:k?b==1?lx:ux:Ws)),x.splits=fe(x.splits||(k&&L.distr==1?Q:L.distr==3?sh:L.distr==4?Rx:Cx)),x.stroke=fe(x.stroke),x.grid.stroke=fe(x.grid.stroke),x.ticks.stroke=fe(x.ticks.stroke),x.border.stroke=fe(x.border.stroke);let $=x.values;x.values=Ms($)&&!Ms($[0])?fe($):k?Ms($)?dp(Y,up($,nt)):ap($)?px(Y,$):$||ft:$||Ax,x.filter=fe(x.filter||(L.distr>=3&&L.log==10?Lx:L.distr==3&&L.log==2?Dx:Pp)),x.font=Ap(x.font),x.labelFont=Ap(x.labelFont),x._size=x.size(n,null,w,0),x._space=x._rotate=x._incrs=x._found=x._splits=x._values=null,x._size>0&&(Pi[w]=!0,x._el=ii(g_,f))}}function Os(x,w,I,L){let[k,$,rt,dt]=I,vt=w%2,Lt=0;return vt==0&&(dt||$)&&(Lt=w==0&&!k||w==2&&!rt?nn(mp.size/3):0),vt==1&&(k||rt)&&(Lt=w==1&&!$||w==3&&!dt?nn(xp.size/2):0),Lt}let da=n.padding=(i.padding||[Os,Os,Os,Os]).map(x=>fe(Me(x,Os))),Ii=n._padding=da.map((x,w)=>x(n,w,Pi,0)),T,z=null,q=null,K=s==1?y[0].idxs:null,H=null,yt=!1;function Ct(x,w){if(t=x??[],n.data=n._data=t,s==2){T=0;for(let I=1;I<y.length;I++)T+=t[I][0].length}else{t.length==0&&(n.data=n._data=t=[[]]),H=t[0],T=H.length;let I=t;if(W==2){I=t.slice();let L=I[0]=Array(T);for(let k=0;k<T;k++)L[k]=k}n._data=t=I}if(gr(!0),mn("setData"),W==2&&(ae=!0),w!==!1){let I=A;I.auto(n,yt)?Gt():_s(R,I.min,I.max),te=te||Bt.left>=0,B=!0,_r()}}n.setData=Ct;function Gt(){yt=!0;let x,w;s==1&&(T>0?(z=K[0]=0,q=K[1]=T-1,x=t[0][z],w=t[0][q],W==2?(x=z,w=q):x==w&&(W==3?[x,w]=Ra(x,x,A.log,!1):W==4?[x,w]=dh(x,x,A.log,!1):A.time?w=x+nn(86400/b):[x,w]=Aa(x,w,fh,!0))):(z=K[0]=x=null,q=K[1]=w=null)),_s(R,x,w)}let Ht,jt,ne,Wt,de,Te,Ce,dn,xe,zt;function jn(x,w,I,L,k,$){x??=Gf,I??=mh,L??="butt",k??=Gf,$??="round",x!=Ht&&(h.strokeStyle=Ht=x),k!=jt&&(h.fillStyle=jt=k),w!=ne&&(h.lineWidth=ne=w),$!=de&&(h.lineJoin=de=$),L!=Te&&(h.lineCap=Te=L),I!=Wt&&h.setLineDash(Wt=I)}function ye(x,w,I,L){w!=jt&&(h.fillStyle=jt=w),x!=Ce&&(h.font=Ce=x),I!=dn&&(h.textAlign=dn=I),L!=xe&&(h.textBaseline=xe=L)}function An(x,w,I,L,k=0){if(L.length>0&&x.auto(n,yt)&&(w==null||w.min==null)){let $=Me(z,0),rt=Me(q,L.length-1),dt=I.min==null?x.distr==3?L_(L,$,rt):I_(L,$,rt,k):[I.min,I.max];x.min=ri(x.min,I.min=dt[0]),x.max=bn(x.max,I.max=dt[1])}}let Ji={min:null,max:null};function Cn(){for(let L in N){let k=N[L];Z[L]==null&&(k.min==null||Z[R]!=null&&k.auto(n,yt))&&(Z[L]=Ji)}for(let L in N){let k=N[L];Z[L]==null&&k.from!=null&&Z[k.from]!=null&&(Z[L]=Ji)}Z[R]!=null&&gr(!0);let x={};for(let L in Z){let k=Z[L];if(k!=null){let $=x[L]=Lr(N[L],V_);if(k.min!=null)tn($,k);else if(L!=R||s==2)if(T==0&&$.from==null){let rt=$.range(n,null,null,L);$.min=rt[0],$.max=rt[1]}else $.min=pe,$.max=-pe}}if(T>0){y.forEach((L,k)=>{if(s==1){let $=L.scale,rt=Z[$];if(rt==null)return;let dt=x[$];if(k==0){let vt=dt.range(n,dt.min,dt.max,$);dt.min=vt[0],dt.max=vt[1],z=_i(dt.min,t[0]),q=_i(dt.max,t[0]),q-z>1&&(t[0][z]<dt.min&&z++,t[0][q]>dt.max&&q--),L.min=H[z],L.max=H[q]}else L.show&&L.auto&&An(dt,rt,L,t[k],L.sorted);L.idxs[0]=z,L.idxs[1]=q}else if(k>0&&L.show&&L.auto){let[$,rt]=L.facets,dt=$.scale,vt=rt.scale,[Lt,Dt]=t[k],kt=x[dt],ie=x[vt];kt!=null&&An(kt,Z[dt],$,Lt,$.sorted),ie!=null&&An(ie,Z[vt],rt,Dt,rt.sorted),L.min=rt.min,L.max=rt.max}});for(let L in x){let k=x[L],$=Z[L];if(k.from==null&&($==null||$.min==null)){let rt=k.range(n,k.min==pe?null:k.min,k.max==-pe?null:k.max,L);k.min=rt[0],k.max=rt[1]}}}for(let L in x){let k=x[L];if(k.from!=null){let $=x[k.from];if($.min==null)k.min=k.max=null;else{let rt=k.range(n,$.min,$.max,L);k.min=rt[0],k.max=rt[1]}}}let w={},I=!1;for(let L in x){let k=x[L],$=N[L];if($.min!=k.min||$.max!=k.max){$.min=k.min,$.max=k.max;let rt=$.distr;$._min=rt==3?ji($.min):rt==4?Zc($.min,$.asinh):rt==100?$.fwd($.min):$.min,$._max=rt==3?ji($.max):rt==4?Zc($.max,$.asinh):rt==100?$.fwd($.max):$.max,w[L]=I=!0}}if(I){y.forEach((L,k)=>{s==2?k>0&&w.y&&(L._paths=null):w[L.scale]&&(L._paths=null)});for(let L in w)ae=!0,mn("setScale",L);Bt.show&&Bt.left>=0&&(te=B=!0)}for(let L in Z)Z[L]=null}function Bs(x){let w=ih(z-1,0,T-1),I=ih(q+1,0,T-1);for(;x[w]==null&&w>0;)w--;for(;x[I]==null&&I<T-1;)I++;return[w,I]}function Ne(){T>0&&(y.forEach((x,w)=>{if(w>0&&x.show&&(Hn(w,!1),Hn(w,!0),x._paths==null)){zt!=x.alpha&&(h.globalAlpha=zt=x.alpha);let I=s==2?[0,t[w][0].length-1]:Bs(t[w]);x._paths=x.paths(n,w,I[0],I[1]),zt!=1&&(h.globalAlpha=zt=1)}}),y.forEach((x,w)=>{if(w>0&&x.show){zt!=x.alpha&&(h.globalAlpha=zt=x.alpha),x._paths!=null&&ms(w,!1);{let I=x._paths!=null?x._paths.gaps:null,L=x.points.show(n,w,z,q,I),k=x.points.filter(n,w,L,I);(L||k)&&(x.points._paths=x.points.paths(n,w,z,q,k),ms(w,!0))}zt!=1&&(h.globalAlpha=zt=1),mn("drawSeries",w)}}))}function Hn(x,w){let I=w?y[x].points:y[x];I._stroke=I.stroke(n,x),I._fill=I.fill(n,x)}function ms(x,w){let I=w?y[x].points:y[x],{stroke:L,fill:k,clip:$,flags:rt,_stroke:dt=I._stroke,_fill:vt=I._fill,_width:Lt=I.width}=I._paths;Lt=Oe(Lt*be,3);let Dt=null,kt=Lt%2/2;w&&vt==null&&(vt=Lt>0?"#fff":dt);let ie=I.pxAlign==1&&kt>0;if(ie&&h.translate(kt,kt),!w){let Fe=Kt-Lt/2,me=ct-Lt/2,ue=wt+Lt,re=Xt+Lt;Dt=new Path2D,Dt.rect(Fe,me,ue,re)}w?Qn(dt,Lt,I.dash,I.cap,vt,L,k,rt,$):Fn(x,dt,Lt,I.dash,I.cap,vt,L,k,rt,Dt,$),ie&&h.translate(-kt,-kt)}function Fn(x,w,I,L,k,$,rt,dt,vt,Lt,Dt){let kt=!1;vt!=0&&P.forEach((ie,Fe)=>{if(ie.series[0]==x){let me=y[ie.series[1]],ue=t[ie.series[1]],re=(me._paths||Fo).band;Ms(re)&&(re=ie.dir==1?re[0]:re[1]);let qt,Ie=null;me.show&&re&&U_(ue,z,q)?(Ie=ie.fill(n,Fe)||$,qt=me._paths.clip):re=null,Qn(w,I,L,k,Ie,rt,dt,vt,Lt,Dt,qt,re),kt=!0}}),kt||Qn(w,I,L,k,$,rt,dt,vt,Lt,Dt)}let fi=Dr|oh;function Qn(x,w,I,L,k,$,rt,dt,vt,Lt,Dt,kt){jn(x,w,I,L,k),(vt||Lt||kt)&&(h.save(),vt&&h.clip(vt),Lt&&h.clip(Lt)),kt?(dt&fi)==fi?(h.clip(kt),Dt&&h.clip(Dt),fa(k,rt),zs(x,$,w)):dt&oh?(fa(k,rt),h.clip(kt),zs(x,$,w)):dt&Dr&&(h.save(),h.clip(kt),Dt&&h.clip(Dt),fa(k,rt),h.restore(),zs(x,$,w)):(fa(k,rt),zs(x,$,w)),(vt||Lt||kt)&&h.restore()}function zs(x,w,I){I>0&&(w instanceof Map?w.forEach((L,k)=>{h.strokeStyle=Ht=k,h.stroke(L)}):w!=null&&x&&h.stroke(w))}function fa(x,w){w instanceof Map?w.forEach((I,L)=>{h.fillStyle=jt=L,h.fill(I)}):w!=null&&x&&h.fill(w)}function P0(x,w,I,L){let k=v[x],$;if(L<=0)$=[0,0];else{let rt=k._space=k.space(n,x,w,I,L),dt=k._incrs=k.incrs(n,x,w,I,L,rt);$=ey(w,I,dt,L,rt)}return k._found=$}function Pc(x,w,I,L,k,$,rt,dt,vt,Lt){let Dt=rt%2/2;m==1&&h.translate(Dt,Dt),jn(dt,rt,vt,Lt,dt),h.beginPath();let kt,ie,Fe,me,ue=k+(L==0||L==3?-$:$);I==0?(ie=k,me=ue):(kt=k,Fe=ue);for(let re=0;re<x.length;re++)w[re]!=null&&(I==0?kt=Fe=x[re]:ie=me=x[re],h.moveTo(kt,ie),h.lineTo(Fe,me));h.stroke(),m==1&&h.translate(-Dt,-Dt)}function I0(x){let w=!0;return v.forEach((I,L)=>{if(!I.show)return;let k=N[I.scale];if(k.min==null){I._show&&(w=!1,I._show=!1,gr(!1));return}else I._show||(w=!1,I._show=!0,gr(!1));let $=I.side,rt=$%2,{min:dt,max:vt}=k,[Lt,Dt]=P0(L,dt,vt,rt==0?S:O);if(Dt==0)return;let kt=k.distr==2,ie=I._splits=I.splits(n,L,dt,vt,Lt,Dt,kt),Fe=k.distr==2?ie.map(qt=>H[qt]):ie,me=k.distr==2?H[ie[1]]-H[ie[0]]:Lt,ue=I._values=I.values(n,I.filter(n,Fe,L,Dt,me),L,Dt,me);I._rotate=$==2?I.rotate(n,ue,L,Dt):0;let re=I._size;I._size=si(I.size(n,ue,L,x)),re!=null&&I._size!=re&&(w=!1)}),w}function L0(x){let w=!0;return da.forEach((I,L)=>{let k=I(n,L,Pi,x);k!=Ii[L]&&(w=!1),Ii[L]=k}),w}function D0(){for(let x=0;x<v.length;x++){let w=v[x];if(!w.show||!w._show)continue;let I=w.side,L=I%2,k,$,rt=w.stroke(n,x),dt=I==0||I==3?-1:1;if(w.label){let In=w.labelGap*dt,Gn=nn((w._lpos+In)*be);ye(w.labelFont[0],rt,"center",I==2?Po:Hf),h.save(),L==1?(k=$=0,h.translate(Gn,nn(ct+Xt/2)),h.rotate((I==3?-Ea:Ea)/2)):(k=nn(Kt+wt/2),$=Gn),h.fillText(w.label,k,$),h.restore()}let[vt,Lt]=w._found;if(Lt==0)continue;let Dt=N[w.scale],kt=L==0?wt:Xt,ie=L==0?Kt:ct,Fe=nn(w.gap*be),me=w._splits,ue=Dt.distr==2?me.map(In=>H[In]):me,re=Dt.distr==2?H[me[1]]-H[me[0]]:vt,qt=w.ticks,Ie=w.border,Je=qt.show?nn(qt.size*be):0,Ze=w._rotate*-Ea/180,Ve=p(w._pos*be),Qe=(Je+Fe)*dt,On=Ve+Qe;$=L==0?On:0,k=L==1?On:0;let Bn=w.font[0],ti=w.align==1?Tr:w.align==2?Yc:Ze>0?Tr:Ze<0?Yc:L==0?"center":I==3?Yc:Tr,pi=Ze||L==1?"middle":I==2?Po:Hf;ye(Bn,rt,ti,pi);let mi=w.font[1]*w.lineGap,Rn=me.map(In=>p(l(In,Dt,kt,ie))),Ui=w._values;for(let In=0;In<Ui.length;In++){let Gn=Ui[In];if(Gn!=null){L==0?k=Rn[In]:$=Rn[In],Gn=""+Gn;let Er=Gn.indexOf(`
+`)==-1?[Gn]:Gn.split(/\n/gm);for(let vs=0;vs<Er.length;vs++){let ei=Er[vs];Ze?(h.save(),h.translate(k,$+vs*mi),h.rotate(Ze),h.fillText(ei,0,0),h.restore()):h.fillText(ei,k,$+vs*mi)}}}qt.show&&Pc(Rn,qt.filter(n,ue,x,Lt,re),L,I,Ve,Je,Oe(qt.width*be,3),qt.stroke(n,x),qt.dash,qt.cap);let Pn=w.grid;Pn.show&&Pc(Rn,Pn.filter(n,ue,x,Lt,re),L,L==0?2:1,L==0?ct:Kt,L==0?Xt:wt,Oe(Pn.width*be,3),Pn.stroke(n,x),Pn.dash,Pn.cap),Ie.show&&Pc([Ve],[1],L==0?1:0,L==0?1:2,L==1?ct:Kt,L==1?Xt:wt,Oe(Ie.width*be,3),Ie.stroke(n,x),Ie.dash,Ie.cap)}mn("drawAxes")}function gr(x){y.forEach((w,I)=>{I>0&&(w._paths=null,x&&(s==1?(w.min=null,w.max=null):w.facets.forEach(L=>{L.min=null,L.max=null})))})}let pa=!1,Ic=!1,bo=[];function U0(){Ic=!1;for(let x=0;x<bo.length;x++)mn(...bo[x]);bo.length=0}function _r(){pa||($_(nf),pa=!0)}function N0(x,w=!1){pa=!0,Ic=w,x(n),nf(),w&&bo.length>0&&queueMicrotask(U0)}n.batch=N0;function nf(){if($t&&(Cn(),$t=!1),ae&&(It(),ae=!1),Rt){if(He(g,Tr,tt),He(g,Po,j),He(g,Lo,S),He(g,Do,O),He(_,Tr,tt),He(_,Po,j),He(_,Lo,S),He(_,Do,O),He(f,Lo,bt),He(f,Do,C),d.width=nn(bt*be),d.height=nn(C*be),v.forEach(({_el:x,_show:w,_size:I,_pos:L,side:k})=>{if(x!=null)if(w){let $=k===3||k===0?I:0,rt=k%2==1;He(x,rt?"left":"top",L-$),He(x,rt?"width":"height",I),He(x,rt?"top":"left",rt?j:tt),He(x,rt?"height":"width",rt?O:S),eh(x,Xs)}else Wn(x,Xs)}),Ht=jt=ne=de=Te=Ce=dn=xe=Wt=null,zt=1,To(!0),tt!=et||j!=Nt||S!=Mt||O!=At){gr(!1);let x=S/Mt,w=O/At;if(Bt.show&&!te&&Bt.left>=0){Bt.left*=x,Bt.top*=w,xr&&Ni(xr,nn(Bt.left),0,S,O),yr&&Ni(yr,0,nn(Bt.top),S,O);for(let I=0;I<Ke.length;I++){let L=Ke[I];L!=null&&(Ri[I]*=x,Zi[I]*=w,Ni(L,si(Ri[I]),si(Zi[I]),S,O))}}if(ke.show&&!Se&&ke.left>=0&&ke.width>0){ke.left*=x,ke.width*=x,ke.top*=w,ke.height*=w;for(let I in Oc)He(Sr,I,ke[I])}et=tt,Nt=j,Mt=S,At=O}mn("setSize"),Rt=!1}bt>0&&C>0&&(h.clearRect(0,0,d.width,d.height),mn("drawClear"),E.forEach(x=>x()),mn("draw")),ke.show&&Se&&(ma(ke),Se=!1),Bt.show&&te&&(Vs(null,!0,!1),te=!1),pt.show&&pt.live&&B&&(Nc(),B=!1),c||(c=!0,n.status=1,mn("ready")),yt=!1,pa=!1}n.redraw=(x,w)=>{ae=w||!1,x!==!1?_s(R,A.min,A.max):_r()};function Lc(x,w){let I=N[x];if(I.from==null){if(T==0){let L=I.range(n,w.min,w.max,x);w.min=L[0],w.max=L[1]}if(w.min>w.max){let L=w.min;w.min=w.max,w.max=L}if(T>1&&w.min!=null&&w.max!=null&&w.max-w.min<1e-16)return;x==R&&I.distr==2&&T>0&&(w.min=_i(w.min,t[0]),w.max=_i(w.max,t[0]),w.min==w.max&&w.max++),Z[x]=w,$t=!0,_r()}}n.setScale=Lc;let Dc,Uc,xr,yr,sf,rf,vr,Mr,of,af,ze,Xe,gs=!1,_n=Bt.drag,fn=_n.x,pn=_n.y;Bt.show&&(Bt.x&&(Dc=ii(x_,_)),Bt.y&&(Uc=ii(y_,_)),A.ori==0?(xr=Dc,yr=Uc):(xr=Uc,yr=Dc),ze=Bt.left,Xe=Bt.top);let ke=n.select=tn({show:!0,over:!0,left:0,width:0,top:0,height:0},i.select),Sr=ke.show?ii(__,ke.over?_:g):null;function ma(x,w){if(ke.show){for(let I in x)ke[I]=x[I],I in Oc&&He(Sr,I,x[I]);w!==!1&&mn("setSelect")}}n.setSelect=ma;function F0(x,w){let I=y[x],L=Zt?Ft[x]:null;if(I.show)L&&eh(L,Xs);else{L&&Wn(L,Xs);let k=$i?Ke[0]:Ke[x];Ni(k,-10,-10,S,O)}}function _s(x,w,I){Lc(x,{min:w,max:I})}function Li(x,w,I,L){w.focus!=null&&V0(x),w.show!=null&&y.forEach((k,$)=>{$>0&&(x==$||x==null)&&(k.show=w.show,F0($,w.show),s==2?(_s(k.facets[0].scale,null,null),_s(k.facets[1].scale,null,null)):_s(k.scale,null,null),_r())}),I!==!1&&mn("setSeries",x,w),L&&Ao("setSeries",n,x,w)}n.setSeries=Li;function O0(x,w){tn(P[x],w)}function B0(x,w){x.fill=fe(x.fill||null),x.dir=Me(x.dir,-1),w=w??P.length,P.splice(w,0,x)}function z0(x){x==null?P.length=0:P.splice(x,1)}n.addBand=B0,n.setBand=O0,n.delBand=z0;function k0(x,w){y[x].alpha=w,Bt.show&&Ke[x]&&(Ke[x].style.opacity=w),Zt&&Ft[x]&&(Ft[x].style.opacity=w)}let Ki,xs,ks,br={focus:!0};function V0(x){if(x!=ks){let w=x==null,I=un.alpha!=1;y.forEach((L,k)=>{if(s==1||k>0){let $=w||k==0||k==x;L._focus=w?null:$,I&&k0(k,$?1:un.alpha)}}),ks=x,I&&_r()}}Zt&&Yi&&xt(Yf,ht,x=>{Bt._lock||(he(x),ks!=null&&Li(null,br,!0,je.setSeries))});function Di(x,w,I){let L=N[w];I&&(x=x/be-(L.ori==1?j:tt));let k=S;L.ori==1&&(k=O,x=k-x),L.dir==-1&&(x=k-x);let $=L._min,rt=L._max,dt=x/k,vt=$+(rt-$)*dt,Lt=L.distr;return Lt==3?Pr(10,vt):Lt==4?F_(vt,L.asinh):Lt==100?L.bwd(vt):vt}function H0(x,w){let I=Di(x,R,w);return _i(I,t[0],z,q)}n.valToIdx=x=>_i(x,t[0]),n.posToIdx=H0,n.posToVal=Di,n.valToPos=(x,w,I)=>N[w].ori==0?o(x,N[w],I?wt:S,I?Kt:0):a(x,N[w],I?Xt:O,I?ct:0),n.setCursor=(x,w,I)=>{ze=x.left,Xe=x.top,Vs(null,w,I)};function lf(x,w){He(Sr,Tr,ke.left=x),He(Sr,Lo,ke.width=w)}function cf(x,w){He(Sr,Po,ke.top=x),He(Sr,Do,ke.height=w)}let wo=A.ori==0?lf:cf,Eo=A.ori==1?lf:cf;function G0(){if(Zt&&pt.live)for(let x=s==2?1:0;x<y.length;x++){if(x==0&&Qt)continue;let w=pt.values[x],I=0;for(let L in w)Yt[x][I++].firstChild.nodeValue=w[L]}}function Nc(x,w){if(x!=null&&(x.idxs?x.idxs.forEach((I,L)=>{_t[L]=I}):k_(x.idx)||_t.fill(x.idx),pt.idx=_t[0]),Zt&&pt.live){for(let I=0;I<y.length;I++)(I>0||s==1&&!Qt)&&W0(I,_t[I]);G0()}B=!1,w!==!1&&mn("setLegend")}n.setLegend=Nc;function W0(x,w){let I=y[x],L=x==0&&W==2?H:t[x],k;Qt?k=I.values(n,x,w)??st:(k=I.value(n,w==null?null:L[w],x,w),k=k==null?st:{_:k}),pt.values[x]=k}function Vs(x,w,I){of=ze,af=Xe,[ze,Xe]=Bt.move(n,ze,Xe),Bt.left=ze,Bt.top=Xe,Bt.show&&(xr&&Ni(xr,nn(ze),0,S,O),yr&&Ni(yr,0,nn(Xe),S,O));let L,k=z>q;Ki=pe,xs=null;let $=A.ori==0?S:O,rt=A.ori==1?S:O;if(ze<0||T==0||k){L=Bt.idx=null;for(let dt=0;dt<y.length;dt++){let vt=Ke[dt];vt!=null&&Ni(vt,-10,-10,S,O)}Yi&&Li(null,br,!0,x==null&&je.setSeries),pt.live&&(_t.fill(L),B=!0)}else{let dt,vt,Lt;s==1&&(dt=A.ori==0?ze:Xe,vt=Di(dt,R),L=Bt.idx=_i(vt,t[0],z,q),Lt=G(t[0][L],A,$,0));let Dt=-10,kt=-10,ie=0,Fe=0,me=!0,ue="",re="";for(let qt=s==2?1:0;qt<y.length;qt++){let Ie=y[qt],Je=_t[qt],Ze=Je==null?null:s==1?t[qt][Je]:t[qt][1][Je],Ve=Bt.dataIdx(n,qt,L,vt),Qe=Ve==null?null:s==1?t[qt][Ve]:t[qt][1][Ve];B=B||Qe!=Ze||Ve!=Je,_t[qt]=Ve;let On=Ve==L?Lt:G(s==1?t[0][Ve]:t[qt][0][Ve],A,$,0);if(qt>0&&Ie.show){let Bn=Qe==null?-10:X(Qe,s==1?N[Ie.scale]:N[Ie.facets[1].scale],rt,0);if(Yi&&Qe!=null){let ti=A.ori==1?ze:Xe,pi=sn(un.dist(n,qt,Ve,Bn,ti));if(pi<Ki){let mi=un.bias;if(mi!=0){let Rn=Di(ti,Ie.scale),Ui=Qe>=0?1:-1,Pn=Rn>=0?1:-1;Pn==Ui&&(Pn==1?mi==1?Qe>=Rn:Qe<=Rn:mi==1?Qe<=Rn:Qe>=Rn)&&(Ki=pi,xs=qt)}else Ki=pi,xs=qt}}if(B||$i){let ti,pi;A.ori==0?(ti=On,pi=Bn):(ti=Bn,pi=On);let mi,Rn,Ui,Pn,In,Gn,Er=!0,vs=Pe.bbox;if(vs!=null){Er=!1;let ei=vs(n,qt);Ui=ei.left,Pn=ei.top,mi=ei.width,Rn=ei.height}else Ui=ti,Pn=pi,mi=Rn=Pe.size(n,qt);if(Gn=Pe.fill(n,qt),In=Pe.stroke(n,qt),$i)qt==xs&&Ki<=un.prox&&(Dt=Ui,kt=Pn,ie=mi,Fe=Rn,me=Er,ue=Gn,re=In);else{let ei=Ke[qt];ei!=null&&(Ri[qt]=Ui,Zi[qt]=Pn,tp(ei,mi,Rn,Er),jf(ei,Gn,In),Ni(ei,si(Ui),si(Pn),S,O))}}}}if($i){let qt=un.prox,Ie=ks==null?Ki<=qt:Ki>qt||xs!=ks;if(B||Ie){let Je=Ke[0];Ri[0]=Dt,Zi[0]=kt,tp(Je,ie,Fe,me),jf(Je,ue,re),Ni(Je,si(Dt),si(kt),S,O)}}}if(ke.show&&gs)if(x!=null){let[dt,vt]=je.scales,[Lt,Dt]=je.match,[kt,ie]=x.cursor.sync.scales,Fe=x.cursor.drag;if(fn=Fe._x,pn=Fe._y,fn||pn){let{left:me,top:ue,width:re,height:qt}=x.select,Ie=x.scales[kt].ori,Je=x.posToVal,Ze,Ve,Qe,On,Bn,ti=dt!=null&&Lt(dt,kt),pi=vt!=null&&Dt(vt,ie);ti&&fn?(Ie==0?(Ze=me,Ve=re):(Ze=ue,Ve=qt),Qe=N[dt],On=G(Je(Ze,kt),Qe,$,0),Bn=G(Je(Ze+Ve,kt),Qe,$,0),wo(ri(On,Bn),sn(Bn-On))):wo(0,$),pi&&pn?(Ie==1?(Ze=me,Ve=re):(Ze=ue,Ve=qt),Qe=N[vt],On=X(Je(Ze,ie),Qe,rt,0),Bn=X(Je(Ze+Ve,ie),Qe,rt,0),Eo(ri(On,Bn),sn(Bn-On))):Eo(0,rt)}else ga()}else{let dt=sn(of-sf),vt=sn(af-rf);if(A.ori==1){let ie=dt;dt=vt,vt=ie}fn=_n.x&&dt>=_n.dist,pn=_n.y&&vt>=_n.dist;let Lt=_n.uni;Lt!=null?fn&&pn&&(fn=dt>=Lt,pn=vt>=Lt,!fn&&!pn&&(vt>dt?pn=!0:fn=!0)):_n.x&&_n.y&&(fn||pn)&&(fn=pn=!0);let Dt,kt;fn&&(A.ori==0?(Dt=vr,kt=ze):(Dt=Mr,kt=Xe),wo(ri(Dt,kt),sn(kt-Dt)),pn||Eo(0,rt)),pn&&(A.ori==1?(Dt=vr,kt=ze):(Dt=Mr,kt=Xe),Eo(ri(Dt,kt),sn(kt-Dt)),fn||wo(0,$)),!fn&&!pn&&(wo(0,0),Eo(0,0))}if(_n._x=fn,_n._y=pn,x==null){if(I){if(vf!=null){let[dt,vt]=je.scales;je.values[0]=dt!=null?Di(A.ori==0?ze:Xe,dt):null,je.values[1]=vt!=null?Di(A.ori==1?ze:Xe,vt):null}Ao(Wf,n,ze,Xe,S,O,L)}if(Yi){let dt=I&&je.setSeries,vt=un.prox;ks==null?Ki<=vt&&Li(xs,br,!0,dt):Ki>vt?Li(null,br,!0,dt):xs!=ks&&Li(xs,br,!0,dt)}}B&&(pt.idx=L,Nc()),w!==!1&&mn("setCursor")}let ys=null;Object.defineProperty(n,"rect",{get(){return ys==null&&To(!1),ys}});function To(x=!1){x?ys=null:(ys=_.getBoundingClientRect(),mn("syncRect",ys))}function hf(x,w,I,L,k,$,rt){Bt._lock||gs&&x!=null&&x.movementX==0&&x.movementY==0||(Fc(x,w,I,L,k,$,rt,!1,x!=null),x!=null?Vs(null,!0,!0):Vs(w,!0,!1))}function Fc(x,w,I,L,k,$,rt,dt,vt){if(ys==null&&To(!1),he(x),x!=null)I=x.clientX-ys.left,L=x.clientY-ys.top;else{if(I<0||L<0){ze=-10,Xe=-10;return}let[Lt,Dt]=je.scales,kt=w.cursor.sync,[ie,Fe]=kt.values,[me,ue]=kt.scales,[re,qt]=je.match,Ie=w.axes[0].side%2==1,Je=A.ori==0?S:O,Ze=A.ori==1?S:O,Ve=Ie?$:k,Qe=Ie?k:$,On=Ie?L:I,Bn=Ie?I:L;if(me!=null?I=re(Lt,me)?l(ie,N[Lt],Je,0):-10:I=Je*(On/Ve),ue!=null?L=qt(Dt,ue)?l(Fe,N[Dt],Ze,0):-10:L=Ze*(Bn/Qe),A.ori==1){let ti=I;I=L,L=ti}}vt&&((I<=1||I>=S-1)&&(I=Gs(I,S)),(L<=1||L>=O-1)&&(L=Gs(L,O))),dt?(sf=I,rf=L,[vr,Mr]=Bt.move(n,I,L)):(ze=I,Xe=L)}let Oc={width:0,height:0,left:0,top:0};function ga(){ma(Oc,!1)}let uf,df,ff,pf;function mf(x,w,I,L,k,$,rt){gs=!0,fn=pn=_n._x=_n._y=!1,Fc(x,w,I,L,k,$,rt,!0,!1),x!=null&&(xt($c,Qc,gf,!1),Ao(Xf,n,vr,Mr,S,O,null));let{left:dt,top:vt,width:Lt,height:Dt}=ke;uf=dt,df=vt,ff=Lt,pf=Dt,ga()}function gf(x,w,I,L,k,$,rt){gs=_n._x=_n._y=!1,Fc(x,w,I,L,k,$,rt,!1,!0);let{left:dt,top:vt,width:Lt,height:Dt}=ke,kt=Lt>0||Dt>0,ie=uf!=dt||df!=vt||ff!=Lt||pf!=Dt;if(kt&&ie&&ma(ke),_n.setScale&&kt&&ie){let Fe=dt,me=Lt,ue=vt,re=Dt;if(A.ori==1&&(Fe=vt,me=Dt,ue=dt,re=Lt),fn&&_s(R,Di(Fe,R),Di(Fe+me,R)),pn)for(let qt in N){let Ie=N[qt];qt!=R&&Ie.from==null&&Ie.min!=pe&&_s(qt,Di(ue+re,qt),Di(ue,qt))}ga()}else Bt.lock&&(Bt._lock=!Bt._lock,Vs(null,!0,!1));x!=null&&(Jt($c,Qc),Ao($c,n,ze,Xe,S,O,null))}function X0(x,w,I,L,k,$,rt){if(Bt._lock)return;he(x);let dt=gs;if(gs){let vt=!0,Lt=!0,Dt=10,kt,ie;A.ori==0?(kt=fn,ie=pn):(kt=pn,ie=fn),kt&&ie&&(vt=ze<=Dt||ze>=S-Dt,Lt=Xe<=Dt||Xe>=O-Dt),kt&&vt&&(ze=ze<vr?0:S),ie&&Lt&&(Xe=Xe<Mr?0:O),Vs(null,!0,!0),gs=!1}ze=-10,Xe=-10,Vs(null,!0,!0),dt&&(gs=dt)}function _f(x,w,I,L,k,$,rt){Bt._lock||(he(x),Gt(),ga(),x!=null&&Ao($f,n,ze,Xe,S,O,null))}function xf(){v.forEach(ny),Et(n.width,n.height,!0)}qs(Ta,Cr,xf);let wr={};wr.mousedown=mf,wr.mousemove=hf,wr.mouseup=gf,wr.dblclick=_f,wr.setSeries=(x,w,I,L)=>{let k=je.match[2];I=k(n,w,I),I!=-1&&Li(I,L,!0,!1)},Bt.show&&(xt(Xf,_,mf),xt(Wf,_,hf),xt(qf,_,x=>{he(x),To(!1)}),xt(Yf,_,X0),xt($f,_,_f),ah.add(n),n.syncRect=To);let _a=n.hooks=i.hooks||{};function mn(x,w,I){Ic?bo.push([x,w,I]):x in _a&&_a[x].forEach(L=>{L.call(null,n,w,I)})}(i.plugins||[]).forEach(x=>{for(let w in x.hooks)_a[w]=(_a[w]||[]).concat(x.hooks[w])});let yf=(x,w,I)=>I,je=tn({key:null,setSeries:!1,filters:{pub:rp,sub:rp},scales:[R,y[1]?y[1].scale:null],match:[op,op,yf],values:[null,null]},Bt.sync);je.match.length==2&&je.match.push(yf),Bt.sync=je;let vf=je.key,Bc=jp(vf);function Ao(x,w,I,L,k,$,rt){je.filters.pub(x,w,I,L,k,$,rt)&&Bc.pub(x,w,I,L,k,$,rt)}Bc.sub(n);function q0(x,w,I,L,k,$,rt){je.filters.sub(x,w,I,L,k,$,rt)&&wr[x](null,w,I,L,k,$,rt)}n.pub=q0;function Y0(){Bc.unsub(n),ah.delete(n),Tt.clear(),nh(Ta,Cr,xf),u.remove(),ht?.remove(),mn("destroy")}n.destroy=Y0;function zc(){mn("init",i,t),Ct(t||i.data,!1),Z[R]?Lc(R,Z[R]):Gt(),Se=ke.show&&(ke.width>0||ke.height>0),te=B=!0,Et(i.width,i.height)}return y.forEach(Fs),v.forEach(ua),e?e instanceof HTMLElement?(e.appendChild(u),zc()):e(n,zc):zc(),n}xn.assign=tn;xn.fmtNum=ph;xn.rangeNum=Aa;xn.rangeLog=Ra;xn.rangeAsinh=dh;xn.orient=$s;xn.pxRatio=be;xn.join=Y_;xn.fmtDate=gh,xn.tzDate=sx;xn.sync=jp;{xn.addGap=kx,xn.clipGaps=La;let i=xn.paths={points:sm};i.linear=om,i.stepped=Gx,i.bars=Wx,i.spline=qx}var Yn=["series-1","series-2","series-3","series-4","series-5","series-6","series-7","series-8"],um=[[],[8,4],[2,3]],hm=8,bh=5,Fa=i=>i.map(t=>t===null?null:-t);function dm(i,t){return[sy(i,t),ry(i,t),oy(i,t),ay(i,t),ly(i),cy(i,t),hy(i),uy(i),dy(i),fy(i),py(i)].filter(n=>n&&n.figures.length)}var iy=i=>i.meta.source==="truth"?"flown":"flown (estimate)";function sy(i,t){let e=i.flown("position"),{t:n}=e,s=i.channel("reference.position"),r=Ye(e,n),o=s&&Ye(s,n),a=t&&Ye(t.flown("position"),n);return{title:"Position of the payload",figures:["North","East","Altitude"].map((u,d)=>{let h=d===2?Fa:g=>g,f=[];return o&&f.push({label:"reference",values:h(o[d]),color:"reference",width:3}),f.push({label:iy(i),values:h(r[d]),color:"flown"}),a&&f.push({label:"B flown",values:h(a[d]),color:"series-2",dash:[6,4]}),{title:u,unit:"m",t:n,series:f,digits:3}})}}function ry(i,t){let e=va(i);if(!e)return null;let n=[{spans:e.avoiding,color:"detected",label:"plan is off the reference: avoiding or waiting"}],s=[];if(i.has("plan.position")){let r=i.meta.summary.safety?.payload_tracking_bound_m;s.push({title:"Error: distance from the plan",unit:"m",t:e.t,zero:!0,digits:4,series:[{label:"error",values:e.error,color:"flown"}],lines:r?[{value:r,label:"bound of the guarantee"}]:[],shaded:n})}if(s.push({title:"Distance from the mission’s reference",unit:"m",t:e.t,zero:!0,digits:3,series:[{label:"distance",values:e.deviation,color:"flown"}],shaded:n}),t){let[r,o]=[i,t].map(a=>Ye(a.flown("position"),e.t));s.push({title:"Distance between the payloads of A and B at the same time",unit:"m",t:e.t,zero:!0,digits:3,series:[{label:"B − A",values:Co(r,o),color:"series-2"}]})}return{title:"Error and avoidance",note:"An error is a distance from the plan. To avoid obstacles the plan itself leaves the reference, which is wanted (shaded).",figures:s}}function oy(i,t){let e=i.flown("attitude"),{t:n}=e,s=i.meta.summary.limits?.payload_tilt_deg?.limit,r=s?[{value:s,label:"limit"},{value:-s,label:""}]:[],o=Xc(e),a=["roll","pitch","yaw"].map((c,u)=>({label:c,values:Array.from(o[u]),color:Yn[u]}));if(t){let c=t.flown("attitude"),u=Xc(c);["roll","pitch","yaw"].forEach((d,h)=>{a.push({label:`B ${d}`,values:Wc(c.t,u[h],n),color:Yn[h],dash:[6,4]})})}return{title:"Attitude of the payload",figures:[{title:"Roll, pitch and yaw (reference: 0)",unit:"°",t:n,series:a,lines:r,digits:2}]}}function ay(i,t){let e=i.channel("clearance.each")??i.channel("clearance.nearest");if(!e)return null;let n=i.meta.summary.limits?.clearance?.limit,s=Ye(e,e.t).map((l,c)=>({label:e.columns[c],values:l,color:Yn[c%Yn.length]})),r=t?.channel("clearance.nearest");r&&s.push({label:"B nearest",values:Ye(r,e.t)[0],color:"series-8",dash:[6,4]});let o=[{value:i.meta.margin,label:"margin of plans"}];n&&(n===i.meta.margin?o[0].label="margin of plans, limit":o.push({value:n,label:"limit"}));let a=Math.max(4*Math.max(i.meta.margin,n??0),2);return{title:"Clearance",note:"From the formation’s hull (payload and rotor discs) to the surface of each obstacle, on the true state.",figures:[{title:"Hull to obstacle",unit:"m",t:e.t,series:s,lines:o,digits:3,zero:!0},{title:`The same, below ${a} m`,unit:"m",t:e.t,series:s,lines:o,digits:3,range:[0,a]}]}}function ly(i){let t=i.channel("plan.clearance"),e=i.channel("plan.progress_rate"),n=i.channel("plan.slack"),s=i.channel("plan.verified");if(!s||!e)return null;let{t:r}=s,a=[{spans:Ma(r,Array.from(s.series[0],d=>d<.5)),color:"bad",label:"plan not verified to keep the margin"}],l=[];t&&l.push({label:"least clearance of the plan",values:Ye(t,r)[0],color:"plan"}),n&&l.push({label:"slack (violation)",values:Ye(n,r)[0],color:"bad"});let c=i.channel("plan.solved");if(c){let d=Ma(r,Array.from(c.series[0],h=>h<.5));a.push({spans:d,color:"reference",label:"no solution: the plan before, or a stop, is flown"})}let u=[];return l.length&&u.push({title:"Barrier: clearance of the plan over its horizon, at most the margin",unit:"m",t:r,series:l,zero:!0,digits:3,lines:[{value:i.meta.margin,label:"margin"}],shaded:a}),u.push({title:"Progress rate along the mission (1: as planned, 0: waiting)",unit:"1",t:r,zero:!0,digits:2,series:[{label:"progress rate",values:Ye(e,r)[0],color:"flown"}]}),{title:"Safety filter",figures:u}}function cy(i,t){let e=i.channel("separation");if(!e)return null;let n=i.meta.summary.limits?.uav_separation?.limit,s=[{label:"nearest two",values:Ye(e,e.t)[0],color:"flown"}],r=t?.channel("separation");r&&s.push({label:"B",values:Ye(r,e.t)[0],color:"series-2",dash:[6,4]});let o={value:2*i.meta.disc_radius,label:"rotor discs touch"},a=n?[o,{value:n,label:"limit"}]:[o];return{title:"Distance between UAVs",figures:[{title:"Centres of the nearest two",unit:"m",t:e.t,series:s,lines:a,digits:3}]}}function hy(i){let t=[],e=i.channel("truth.thrust"),n=o=>Ye(o,o.t).map((a,l)=>({label:o.columns[l],values:a,color:Yn[l%Yn.length],dash:um[Math.floor(l/Yn.length)%3]}));if(e){let o=[{value:i.meta.thrust_max,label:"largest thrust"}];t.push({title:"Thrust of each UAV",unit:"N",t:e.t,series:n(e),lines:o,zero:!0,digits:2})}let s=i.channel("truth.tension");if(s){let o=[{value:0,label:"below: compression"}];t.push({title:"Tension of each link",unit:"N",t:s.t,series:n(s),lines:o,digits:2})}let r=i.channel("estimate.disturbance");if(r){let o=Ye(r,r.t),a=["north","east","up"].map((l,c)=>({label:l,values:c===2?Fa(o[2]):o[c],color:Yn[c]}));t.push({title:"Disturbance force on the payload, as estimated",unit:"N",t:r.t,series:a,digits:2})}return{title:"Forces",figures:t}}function uy(i){let t=i.channel("estimate.payload.position"),e=i.channel("truth.payload.position");if(!t||!e)return null;let{t:n}=t,s=i.channel("estimate.payload.position_sd"),[r,o]=[Ye(t,n),Ye(e,n)],a=s&&Ye(s,n),l=["north","east","altitude"].map((u,d)=>{let h=r[d].map((m,p)=>m===null||o[d][p]===null?null:m-o[d][p]),f=d===2?Fa(h):h,g=[],_=[];if(a){let m=a[d].map(p=>p===null?null:3*p);g.push({label:"+3σ",values:m,color:"reference",width:1}),g.push({label:"−3σ",values:Fa(m),color:"reference",width:1}),_.push({low:2,high:1,color:"reference"})}return g.push({label:"estimate − truth",values:f,color:"estimate"}),{title:`Error of the estimate, ${u}`,unit:"m",t:n,series:g,bands:_,digits:4}});return{title:"Estimation",note:a?"Grey: three standard deviations, as the estimator states them.":"Standard deviations are not on record.",figures:l}}function dy(i){let t=i.names("innovations.");if(!t.length)return null;let e=t.map(c=>{let u=i.channel(c),[,d,h]=c.split(".");return{label:`${d} ${h}`,channel:u,most:Math.max(...Array.from(u.series[0]).filter(Number.isFinite),0)}});e.sort((c,u)=>u.most-c.most);let n=e.slice(0,hm),s=n.reduce((c,u)=>u.channel.t.length>c.channel.t.length?u:c),{t:r}=s.channel,o=n.map(({label:c,channel:u},d)=>({label:c,values:Ye(u,r)[0],color:Yn[d],dash:um[0]})),a=[{value:1,label:"rejected above"}],l=e.length-n.length;return{title:"Innovation tests",note:`Above 1 a measurement is rejected.${l>0?` Shown are the ${hm} sources with the largest ratios; ${l} others stayed below.`:""}`,figures:[n[0].most>bh?{title:`Test ratio, up to ${bh}`,unit:"1",t:r,series:o,lines:a,digits:2,range:[0,bh]}:{title:"Test ratio",unit:"1",t:r,series:o,lines:a,zero:!0,digits:2}]}}function fy(i){let t=i.channel("steps.time");if(!t)return null;let e={total:"whole step",estimator:"estimation",planner:"planning"},n=Ye(t,t.t).map((r,o)=>({label:e[t.columns[o]]??t.columns[o],values:r,color:Yn[(o+7)%Yn.length],width:o?1:1.5})),s=[{value:1e3*i.meta.control_period,label:"control period"}];return{title:"Compute time",figures:[{title:"Control step, and its parts (wall time)",unit:"ms",t:t.t,series:n,lines:s,zero:!0,digits:1}]}}function py(i){return{title:"Links",note:"From the telemetry log.",figures:[["link.loss","Messages lost, vehicle to ground","%",1],["link.latency","Latency, vehicle to ground (above the least)","ms",1],["link.rate","Messages received","1/s",0]].filter(([n])=>i.has(n)).map(([n,s,r,o])=>{let a=i.channel(n),l=Ye(a,a.t).map((c,u)=>({label:a.columns[u],values:c,color:Yn[u%Yn.length]}));return{title:s,unit:r,t:a.t,series:l,zero:!0,digits:o}})}}var fm=170,my=[{kind:"phase",label:"phase (every second one)",color:"band-phase"},{kind:"fault",label:"fault",color:"band-fault"},{kind:"mode",label:"onboard mode or failsafe",color:"band-mode"},{kind:"isolation",label:"channel isolated",color:"band-isolation"},{kind:"alarm",label:"alarm",color:"bad"}],Oa=class{constructor(t,e,n,s){this.run=e,this.clock=n,this.ghost=s,this.shown=[],this.zooming=!1,this.legendAt=-1/0,this.observer=new IntersectionObserver(r=>{for(let o of r){let a=this.shown.find(({plot:l})=>l.root.parentElement===o.target);a&&(a.visible=o.isIntersecting,a.visible&&this.place(a,!0))}}),this.groups=dm(e,s),this.element=t,this.draw(),n.onChange(()=>this.move()),new ResizeObserver(()=>this.resize()).observe(t),window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change",()=>this.draw())}draw(){this.observer.disconnect();for(let{plot:s}of this.shown)s.destroy();this.shown=[];let t=new Set(this.run.events.map(s=>s.kind)),e=my.filter(({kind:s})=>t.has(s)).map(({kind:s,label:r})=>V("span.key",{},V(`span.swatch.${s}`,{}),r)),n=V("button",{type:"button",onclick:()=>this.zoom(this.clock.begin,this.clock.end)},"whole flight");this.element.replaceChildren(V("h2",{},"Plots"),V("p.hint",{},"Drag over a plot to zoom all of them; click to move the clock. ",n),V("p.keys-of-bands",{},...e));for(let{title:s,note:r,figures:o}of this.groups){let a=V("div.plots",{});this.element.append(V("details",{open:!0},V("summary",{},s),r?V("p.hint",{},r):null,a));for(let l of o)this.add(a,l)}}add(t,e){let n=V("figure",{},V("figcaption",{},e.title,...this.shadedKeys(e)));t.append(n);let s=e.lines??[],r=Sn("limit"),o="12px system-ui, sans-serif",a={stroke:Sn("muted"),font:o,grid:{stroke:Sn("line"),width:.5},ticks:{stroke:Sn("line"),width:.5}},l=_=>Array.from(e.t,()=>_),c=e.digits??2,u={width:this.width(),height:fm,scales:{x:{time:!1,range:this.rangeX()},y:{range:(_,m,p)=>gy(e,m,p)}},cursor:{sync:{key:"report",scales:["x",null],setSeries:!1},drag:{x:!0,y:!1,setScale:!1},points:{size:6}},legend:{live:!0},padding:[12,8,0,0],axes:[{...a,label:"time (s)",labelSize:16,labelFont:o,size:28,space:60},{...a,label:e.unit==="1"?"ratio":e.unit,labelSize:16,labelFont:o,size:46}],series:[{label:"time",value:(_,m)=>m===null?"":`${m.toFixed(2)} s`},...e.series.map(({label:_,color:m,dash:p,width:b})=>({label:_,stroke:Sn(m),width:b??1.5,dash:p,points:{show:!1},value:(y,v)=>v===null?"–":`${v.toFixed(c)} ${e.unit==="1"?"":e.unit}`})),...s.map(({label:_,value:m})=>({label:_?`${_} ${m} ${e.unit==="1"?"":e.unit}`:" ",stroke:r,width:1.5,dash:[7,4],points:{show:!1},value:()=>"",class:_?"line":"unnamed"}))],bands:(e.bands??[]).map(({low:_,high:m,color:p})=>({series:[m,_],fill:`${Sn(p)}40`})),hooks:{drawClear:[_=>this.background(_,e)],setSelect:[_=>{_.select.width>3&&this.zoom(_.posToVal(_.select.left,"x"),_.posToVal(_.select.left+_.select.width,"x")),_.setSelect({left:0,top:0,width:0,height:0},!1)}]}},d=[Array.from(e.t),...e.series.map(({values:_})=>_),...s.map(({value:_})=>l(_))],h=new xn(u,d,n),f=V("div.clock-cursor",{});h.over.append(f),h.over.addEventListener("click",_=>{_.detail===1&&this.clock.set(h.posToVal(_.offsetX,"x"))}),h.over.addEventListener("dblclick",()=>this.zoom(this.clock.begin,this.clock.end));let g={plot:h,figure:e,cursor:f,visible:!1};this.shown.push(g),this.observer.observe(n)}shadedKeys(t){return(t.shaded??[]).filter(({spans:e})=>e.length).map(({color:e,label:n})=>V("span.key",{},V("span.swatch",{style:{background:Sn(e),opacity:"0.35"}}),n))}rangeX(){return()=>this.view??[this.clock.begin,this.clock.end]}zoom(t,e){this.view=[Math.max(t,this.clock.begin),Math.min(e,this.clock.end)];for(let n of this.shown)n.plot.setScale("x",{min:this.view[0],max:this.view[1]}),this.place(n,!1)}background(t,e){let{ctx:n}=t,{left:s,top:r,width:o,height:a}=t.bbox,l=h=>Math.min(Math.max(t.valToPos(h,"x",!0),s),s+o),c=(h,f,g,_,m)=>{let[p,b]=[l(h),l(f)];b<=s||p>=s+o||(n.fillStyle=g,n.fillRect(p,_,Math.max(b-p,1),m))};n.save();let u=this.clock.end;this.run.events.filter(h=>h.kind==="phase").forEach((h,f)=>{f%2&&c(h.start,h.end??u,Sn("band-phase"),r,a)});for(let{spans:h,color:f}of e.shaded??[]){n.globalAlpha=.2;for(let[g,_]of h)c(g,_,Sn(f),r,a);n.globalAlpha=1}let d=4*devicePixelRatio;for(let h of this.run.events)h.kind==="fault"?c(h.start,h.end??u,Sn("band-fault"),r,a):h.kind==="mode"?c(h.start,h.end??u,Sn("band-mode"),r,d):h.kind==="isolation"?c(h.start,h.end??u,Sn("band-isolation"),r+d,d):h.kind==="alarm"&&c(h.start,h.start,Sn("bad"),r,2*d);n.restore()}move(){let t=performance.now(),e=!this.clock.playing||t-this.legendAt>100;e&&(this.legendAt=t);for(let n of this.shown)n.visible&&this.place(n,e)}place({plot:t,figure:e,cursor:n},s){let r=t.valToPos(this.clock.time,"x"),o=r>=-.5&&r<=t.over.clientWidth+.5;n.style.display=o?"":"none",n.style.transform=`translateX(${r}px)`,s&&(t.cursor.left??-10)<0&&t.setLegend({idx:_y(e.t,this.clock.time)},!1)}width(){return Math.max(this.element.clientWidth,200)}resize(){let t=this.width();for(let e of this.shown)e.plot.width!==t&&e.plot.setSize({width:t,height:fm}),this.place(e,!1)}};function gy(i,t,e){if(i.range)return[i.range[0]??t,i.range[1]??e];if(t===null||e===null)return[0,1];let[n,s]=i.zero?[Math.min(t,0),Math.max(e,0)]:[t,e],r=(s-n||Math.abs(s)||1)*.06;return[i.zero&&n===0?0:n-r,s+2*r]}function _y(i,t){let[e,n]=[0,i.length-1];for(;n-e>1;){let s=e+n>>1;i[s]<=t?e=s:n=s}return t-i[e]<i[n]-t?e:n}var Pd="170",Ti={LEFT:0,MIDDLE:1,RIGHT:2,ROTATE:0,DOLLY:1,PAN:2},Gi={ROTATE:0,PAN:1,DOLLY_PAN:2,DOLLY_ROTATE:3},xy=0,pm=1,yy=2;var Tg=1,vy=2,rs=3,Ds=0,zn=1,Mi=2,Ps=0,Qr=1,mm=2,gm=3,_m=4,My=5,nr=100,Sy=101,by=102,wy=103,Ey=104,Ty=200,Ay=201,Cy=202,Ry=203,su=204,ru=205,Py=206,Iy=207,Ly=208,Dy=209,Uy=210,Ny=211,Fy=212,Oy=213,By=214,ou=0,au=1,lu=2,so=3,cu=4,hu=5,uu=6,du=7,Id=0,zy=1,ky=2,Is=0,Vy=1,Hy=2,Gy=3,Wy=4,Xy=5,qy=6,Yy=7;var Ag=300,ro=301,oo=302,fu=303,pu=304,nc=306,mu=1e3,sr=1001,gu=1002,wi=1003,$y=1004;var Ba=1005;var Oi=1006,wh=1007;var rr=1008;var cs=1009,Cg=1010,Rg=1011,Zo=1012,Ld=1013,or=1014,os=1015,sa=1016,Dd=1017,Ud=1018,ao=1020,Pg=35902,Ig=1021,Lg=1022,bi=1023,Dg=1024,Ug=1025,to=1026,lo=1027,Ng=1028,Nd=1029,Fg=1030,Fd=1031;var Od=1033,ml=33776,gl=33777,_l=33778,xl=33779,_u=35840,xu=35841,yu=35842,vu=35843,Mu=36196,Su=37492,bu=37496,wu=37808,Eu=37809,Tu=37810,Au=37811,Cu=37812,Ru=37813,Pu=37814,Iu=37815,Lu=37816,Du=37817,Uu=37818,Nu=37819,Fu=37820,Ou=37821,yl=36492,Bu=36494,zu=36495,Og=36283,ku=36284,Vu=36285,Hu=36286;var vl=2300,Gu=2301,Eh=2302,xm=2400,ym=2401,vm=2402;var Zy=3200,Jy=3201;var Bg=0,Ky=1,Rs="",ai="srgb",_o="srgb-linear",ic="linear",Le="srgb";var Or=7680,zg=7681;var kg=517;var Mm=519,jy=512,Qy=513,tv=514,Vg=515,ev=516,nv=517,iv=518,sv=519,Wu=35044;var Sm="300 es",as=2e3,Ml=2001,hs=class{addEventListener(t,e){this._listeners===void 0&&(this._listeners={});let n=this._listeners;n[t]===void 0&&(n[t]=[]),n[t].indexOf(e)===-1&&n[t].push(e)}hasEventListener(t,e){if(this._listeners===void 0)return!1;let n=this._listeners;return n[t]!==void 0&&n[t].indexOf(e)!==-1}removeEventListener(t,e){if(this._listeners===void 0)return;let s=this._listeners[t];if(s!==void 0){let r=s.indexOf(e);r!==-1&&s.splice(r,1)}}dispatchEvent(t){if(this._listeners===void 0)return;let n=this._listeners[t.type];if(n!==void 0){t.target=this;let s=n.slice(0);for(let r=0,o=s.length;r<o;r++)s[r].call(this,t);t.target=null}}},wn=["00","01","02","03","04","05","06","07","08","09","0a","0b","0c","0d","0e","0f","10","11","12","13","14","15","16","17","18","19","1a","1b","1c","1d","1e","1f","20","21","22","23","24","25","26","27","28","29","2a","2b","2c","2d","2e","2f","30","31","32","33","34","35","36","37","38","39","3a","3b","3c","3d","3e","3f","40","41","42","43","44","45","46","47","48","49","4a","4b","4c","4d","4e","4f","50","51","52","53","54","55","56","57","58","59","5a","5b","5c","5d","5e","5f","60","61","62","63","64","65","66","67","68","69","6a","6b","6c","6d","6e","6f","70","71","72","73","74","75","76","77","78","79","7a","7b","7c","7d","7e","7f","80","81","82","83","84","85","86","87","88","89","8a","8b","8c","8d","8e","8f","90","91","92","93","94","95","96","97","98","99","9a","9b","9c","9d","9e","9f","a0","a1","a2","a3","a4","a5","a6","a7","a8","a9","aa","ab","ac","ad","ae","af","b0","b1","b2","b3","b4","b5","b6","b7","b8","b9","ba","bb","bc","bd","be","bf","c0","c1","c2","c3","c4","c5","c6","c7","c8","c9","ca","cb","cc","cd","ce","cf","d0","d1","d2","d3","d4","d5","d6","d7","d8","d9","da","db","dc","dd","de","df","e0","e1","e2","e3","e4","e5","e6","e7","e8","e9","ea","eb","ec","ed","ee","ef","f0","f1","f2","f3","f4","f5","f6","f7","f8","f9","fa","fb","fc","fd","fe","ff"],bm=1234567,eo=Math.PI/180,Jo=180/Math.PI;function Bi(){let i=Math.random()*4294967295|0,t=Math.random()*4294967295|0,e=Math.random()*4294967295|0,n=Math.random()*4294967295|0;return(wn[i&255]+wn[i>>8&255]+wn[i>>16&255]+wn[i>>24&255]+"-"+wn[t&255]+wn[t>>8&255]+"-"+wn[t>>16&15|64]+wn[t>>24&255]+"-"+wn[e&63|128]+wn[e>>8&255]+"-"+wn[e>>16&255]+wn[e>>24&255]+wn[n&255]+wn[n>>8&255]+wn[n>>16&255]+wn[n>>24&255]).toLowerCase()}function on(i,t,e){return Math.max(t,Math.min(e,i))}function Bd(i,t){return(i%t+t)%t}function rv(i,t,e,n,s){return n+(i-t)*(s-n)/(e-t)}function ov(i,t,e){return i!==t?(e-i)/(t-i):0}function Xo(i,t,e){return(1-e)*i+e*t}function av(i,t,e,n){return Xo(i,t,1-Math.exp(-e*n))}function lv(i,t=1){return t-Math.abs(Bd(i,t*2)-t)}function cv(i,t,e){return i<=t?0:i>=e?1:(i=(i-t)/(e-t),i*i*(3-2*i))}function hv(i,t,e){return i<=t?0:i>=e?1:(i=(i-t)/(e-t),i*i*i*(i*(i*6-15)+10))}function uv(i,t){return i+Math.floor(Math.random()*(t-i+1))}function dv(i,t){return i+Math.random()*(t-i)}function fv(i){return i*(.5-Math.random())}function pv(i){i!==void 0&&(bm=i);let t=bm+=1831565813;return t=Math.imul(t^t>>>15,t|1),t^=t+Math.imul(t^t>>>7,t|61),((t^t>>>14)>>>0)/4294967296}function mv(i){return i*eo}function gv(i){return i*Jo}function _v(i){return(i&i-1)===0&&i!==0}function xv(i){return Math.pow(2,Math.ceil(Math.log(i)/Math.LN2))}function yv(i){return Math.pow(2,Math.floor(Math.log(i)/Math.LN2))}function vv(i,t,e,n,s){let r=Math.cos,o=Math.sin,a=r(e/2),l=o(e/2),c=r((t+n)/2),u=o((t+n)/2),d=r((t-n)/2),h=o((t-n)/2),f=r((n-t)/2),g=o((n-t)/2);switch(s){case"XYX":i.set(a*u,l*d,l*h,a*c);break;case"YZY":i.set(l*h,a*u,l*d,a*c);break;case"ZXZ":i.set(l*d,l*h,a*u,a*c);break;case"XZX":i.set(a*u,l*g,l*f,a*c);break;case"YXY":i.set(l*f,a*u,l*g,a*c);break;case"ZYZ":i.set(l*g,l*f,a*u,a*c);break;default:console.warn("THREE.MathUtils: .setQuaternionFromProperEuler() encountered an unknown order: "+s)}}function Si(i,t){switch(t.constructor){case Float32Array:return i;case Uint32Array:return i/4294967295;case Uint16Array:return i/65535;case Uint8Array:return i/255;case Int32Array:return Math.max(i/2147483647,-1);case Int16Array:return Math.max(i/32767,-1);case Int8Array:return Math.max(i/127,-1);default:throw new Error("Invalid component type.")}}function Re(i,t){switch(t.constructor){case Float32Array:return i;case Uint32Array:return Math.round(i*4294967295);case Uint16Array:return Math.round(i*65535);case Uint8Array:return Math.round(i*255);case Int32Array:return Math.round(i*2147483647);case Int16Array:return Math.round(i*32767);case Int8Array:return Math.round(i*127);default:throw new Error("Invalid component type.")}}var sc={DEG2RAD:eo,RAD2DEG:Jo,generateUUID:Bi,clamp:on,euclideanModulo:Bd,mapLinear:rv,inverseLerp:ov,lerp:Xo,damp:av,pingpong:lv,smoothstep:cv,smootherstep:hv,randInt:uv,randFloat:dv,randFloatSpread:fv,seededRandom:pv,degToRad:mv,radToDeg:gv,isPowerOfTwo:_v,ceilPowerOfTwo:xv,floorPowerOfTwo:yv,setQuaternionFromProperEuler:vv,normalize:Re,denormalize:Si},gt=class i{constructor(t=0,e=0){i.prototype.isVector2=!0,this.x=t,this.y=e}get width(){return this.x}set width(t){this.x=t}get height(){return this.y}set height(t){this.y=t}set(t,e){return this.x=t,this.y=e,this}setScalar(t){return this.x=t,this.y=t,this}setX(t){return this.x=t,this}setY(t){return this.y=t,this}setComponent(t,e){switch(t){case 0:this.x=e;break;case 1:this.y=e;break;default:throw new Error("index is out of range: "+t)}return this}getComponent(t){switch(t){case 0:return this.x;case 1:return this.y;default:throw new Error("index is out of range: "+t)}}clone(){return new this.constructor(this.x,this.y)}copy(t){return this.x=t.x,this.y=t.y,this}add(t){return this.x+=t.x,this.y+=t.y,this}addScalar(t){return this.x+=t,this.y+=t,this}addVectors(t,e){return this.x=t.x+e.x,this.y=t.y+e.y,this}addScaledVector(t,e){return this.x+=t.x*e,this.y+=t.y*e,this}sub(t){return this.x-=t.x,this.y-=t.y,this}subScalar(t){return this.x-=t,this.y-=t,this}subVectors(t,e){return this.x=t.x-e.x,this.y=t.y-e.y,this}multiply(t){return this.x*=t.x,this.y*=t.y,this}multiplyScalar(t){return this.x*=t,this.y*=t,this}divide(t){return this.x/=t.x,this.y/=t.y,this}divideScalar(t){return this.multiplyScalar(1/t)}applyMatrix3(t){let e=this.x,n=this.y,s=t.elements;return this.x=s[0]*e+s[3]*n+s[6],this.y=s[1]*e+s[4]*n+s[7],this}min(t){return this.x=Math.min(this.x,t.x),this.y=Math.min(this.y,t.y),this}max(t){return this.x=Math.max(this.x,t.x),this.y=Math.max(this.y,t.y),this}clamp(t,e){return this.x=Math.max(t.x,Math.min(e.x,this.x)),this.y=Math.max(t.y,Math.min(e.y,this.y)),this}clampScalar(t,e){return this.x=Math.max(t,Math.min(e,this.x)),this.y=Math.max(t,Math.min(e,this.y)),this}clampLength(t,e){let n=this.length();return this.divideScalar(n||1).multiplyScalar(Math.max(t,Math.min(e,n)))}floor(){return this.x=Math.floor(this.x),this.y=Math.floor(this.y),this}ceil(){return this.x=Math.ceil(this.x),this.y=Math.ceil(this.y),this}round(){return this.x=Math.round(this.x),this.y=Math.round(this.y),this}roundToZero(){return this.x=Math.trunc(this.x),this.y=Math.trunc(this.y),this}negate(){return this.x=-this.x,this.y=-this.y,this}dot(t){return this.x*t.x+this.y*t.y}cross(t){return this.x*t.y-this.y*t.x}lengthSq(){return this.x*this.x+this.y*this.y}length(){return Math.sqrt(this.x*this.x+this.y*this.y)}manhattanLength(){return Math.abs(this.x)+Math.abs(this.y)}normalize(){return this.divideScalar(this.length()||1)}angle(){return Math.atan2(-this.y,-this.x)+Math.PI}angleTo(t){let e=Math.sqrt(this.lengthSq()*t.lengthSq());if(e===0)return Math.PI/2;let n=this.dot(t)/e;return Math.acos(on(n,-1,1))}distanceTo(t){return Math.sqrt(this.distanceToSquared(t))}distanceToSquared(t){let e=this.x-t.x,n=this.y-t.y;return e*e+n*n}manhattanDistanceTo(t){return Math.abs(this.x-t.x)+Math.abs(this.y-t.y)}setLength(t){return this.normalize().multiplyScalar(t)}lerp(t,e){return this.x+=(t.x-this.x)*e,this.y+=(t.y-this.y)*e,this}lerpVectors(t,e,n){return this.x=t.x+(e.x-t.x)*n,this.y=t.y+(e.y-t.y)*n,this}equals(t){return t.x===this.x&&t.y===this.y}fromArray(t,e=0){return this.x=t[e],this.y=t[e+1],this}toArray(t=[],e=0){return t[e]=this.x,t[e+1]=this.y,t}fromBufferAttribute(t,e){return this.x=t.getX(e),this.y=t.getY(e),this}rotateAround(t,e){let n=Math.cos(e),s=Math.sin(e),r=this.x-t.x,o=this.y-t.y;return this.x=r*n-o*s+t.x,this.y=r*s+o*n+t.y,this}random(){return this.x=Math.random(),this.y=Math.random(),this}*[Symbol.iterator](){yield this.x,yield this.y}},le=class i{constructor(t,e,n,s,r,o,a,l,c){i.prototype.isMatrix3=!0,this.elements=[1,0,0,0,1,0,0,0,1],t!==void 0&&this.set(t,e,n,s,r,o,a,l,c)}set(t,e,n,s,r,o,a,l,c){let u=this.elements;return u[0]=t,u[1]=s,u[2]=a,u[3]=e,u[4]=r,u[5]=l,u[6]=n,u[7]=o,u[8]=c,this}identity(){return this.set(1,0,0,0,1,0,0,0,1),this}copy(t){let e=this.elements,n=t.elements;return e[0]=n[0],e[1]=n[1],e[2]=n[2],e[3]=n[3],e[4]=n[4],e[5]=n[5],e[6]=n[6],e[7]=n[7],e[8]=n[8],this}extractBasis(t,e,n){return t.setFromMatrix3Column(this,0),e.setFromMatrix3Column(this,1),n.setFromMatrix3Column(this,2),this}setFromMatrix4(t){let e=t.elements;return this.set(e[0],e[4],e[8],e[1],e[5],e[9],e[2],e[6],e[10]),this}multiply(t){return this.multiplyMatrices(this,t)}premultiply(t){return this.multiplyMatrices(t,this)}multiplyMatrices(t,e){let n=t.elements,s=e.elements,r=this.elements,o=n[0],a=n[3],l=n[6],c=n[1],u=n[4],d=n[7],h=n[2],f=n[5],g=n[8],_=s[0],m=s[3],p=s[6],b=s[1],y=s[4],v=s[7],N=s[2],P=s[5],R=s[8];return r[0]=o*_+a*b+l*N,r[3]=o*m+a*y+l*P,r[6]=o*p+a*v+l*R,r[1]=c*_+u*b+d*N,r[4]=c*m+u*y+d*P,r[7]=c*p+u*v+d*R,r[2]=h*_+f*b+g*N,r[5]=h*m+f*y+g*P,r[8]=h*p+f*v+g*R,this}multiplyScalar(t){let e=this.elements;return e[0]*=t,e[3]*=t,e[6]*=t,e[1]*=t,e[4]*=t,e[7]*=t,e[2]*=t,e[5]*=t,e[8]*=t,this}determinant(){let t=this.elements,e=t[0],n=t[1],s=t[2],r=t[3],o=t[4],a=t[5],l=t[6],c=t[7],u=t[8];return e*o*u-e*a*c-n*r*u+n*a*l+s*r*c-s*o*l}invert(){let t=this.elements,e=t[0],n=t[1],s=t[2],r=t[3],o=t[4],a=t[5],l=t[6],c=t[7],u=t[8],d=u*o-a*c,h=a*l-u*r,f=c*r-o*l,g=e*d+n*h+s*f;if(g===0)return this.set(0,0,0,0,0,0,0,0,0);let _=1/g;return t[0]=d*_,t[1]=(s*c-u*n)*_,t[2]=(a*n-s*o)*_,t[3]=h*_,t[4]=(u*e-s*l)*_,t[5]=(s*r-a*e)*_,t[6]=f*_,t[7]=(n*l-c*e)*_,t[8]=(o*e-n*r)*_,this}transpose(){let t,e=this.elements;return t=e[1],e[1]=e[3],e[3]=t,t=e[2],e[2]=e[6],e[6]=t,t=e[5],e[5]=e[7],e[7]=t,this}getNormalMatrix(t){return this.setFromMatrix4(t).invert().transpose()}transposeIntoArray(t){let e=this.elements;return t[0]=e[0],t[1]=e[3],t[2]=e[6],t[3]=e[1],t[4]=e[4],t[5]=e[7],t[6]=e[2],t[7]=e[5],t[8]=e[8],this}setUvTransform(t,e,n,s,r,o,a){let l=Math.cos(r),c=Math.sin(r);return this.set(n*l,n*c,-n*(l*o+c*a)+o+t,-s*c,s*l,-s*(-c*o+l*a)+a+e,0,0,1),this}scale(t,e){return this.premultiply(Th.makeScale(t,e)),this}rotate(t){return this.premultiply(Th.makeRotation(-t)),this}translate(t,e){return this.premultiply(Th.makeTranslation(t,e)),this}makeTranslation(t,e){return t.isVector2?this.set(1,0,t.x,0,1,t.y,0,0,1):this.set(1,0,t,0,1,e,0,0,1),this}makeRotation(t){let e=Math.cos(t),n=Math.sin(t);return this.set(e,-n,0,n,e,0,0,0,1),this}makeScale(t,e){return this.set(t,0,0,0,e,0,0,0,1),this}equals(t){let e=this.elements,n=t.elements;for(let s=0;s<9;s++)if(e[s]!==n[s])return!1;return!0}fromArray(t,e=0){for(let n=0;n<9;n++)this.elements[n]=t[n+e];return this}toArray(t=[],e=0){let n=this.elements;return t[e]=n[0],t[e+1]=n[1],t[e+2]=n[2],t[e+3]=n[3],t[e+4]=n[4],t[e+5]=n[5],t[e+6]=n[6],t[e+7]=n[7],t[e+8]=n[8],t}clone(){return new this.constructor().fromArray(this.elements)}},Th=new le;function Hg(i){for(let t=i.length-1;t>=0;--t)if(i[t]>=65535)return!0;return!1}function Sl(i){return document.createElementNS("http://www.w3.org/1999/xhtml",i)}function Mv(){let i=Sl("canvas");return i.style.display="block",i}var wm={};function Go(i){i in wm||(wm[i]=!0,console.warn(i))}function Sv(i,t,e){return new Promise(function(n,s){function r(){switch(i.clientWaitSync(t,i.SYNC_FLUSH_COMMANDS_BIT,0)){case i.WAIT_FAILED:s();break;case i.TIMEOUT_EXPIRED:setTimeout(r,e);break;default:n()}}setTimeout(r,e)})}function bv(i){let t=i.elements;t[2]=.5*t[2]+.5*t[3],t[6]=.5*t[6]+.5*t[7],t[10]=.5*t[10]+.5*t[11],t[14]=.5*t[14]+.5*t[15]}function wv(i){let t=i.elements;t[11]===-1?(t[10]=-t[10]-1,t[14]=-t[14]):(t[10]=-t[10],t[14]=-t[14]+1)}var ve={enabled:!0,workingColorSpace:_o,spaces:{},convert:function(i,t,e){return this.enabled===!1||t===e||!t||!e||(this.spaces[t].transfer===Le&&(i.r=ls(i.r),i.g=ls(i.g),i.b=ls(i.b)),this.spaces[t].primaries!==this.spaces[e].primaries&&(i.applyMatrix3(this.spaces[t].toXYZ),i.applyMatrix3(this.spaces[e].fromXYZ)),this.spaces[e].transfer===Le&&(i.r=no(i.r),i.g=no(i.g),i.b=no(i.b))),i},fromWorkingColorSpace:function(i,t){return this.convert(i,this.workingColorSpace,t)},toWorkingColorSpace:function(i,t){return this.convert(i,t,this.workingColorSpace)},getPrimaries:function(i){return this.spaces[i].primaries},getTransfer:function(i){return i===Rs?ic:this.spaces[i].transfer},getLuminanceCoefficients:function(i,t=this.workingColorSpace){return i.fromArray(this.spaces[t].luminanceCoefficients)},define:function(i){Object.assign(this.spaces,i)},_getMatrix:function(i,t,e){return i.copy(this.spaces[t].toXYZ).multiply(this.spaces[e].fromXYZ)},_getDrawingBufferColorSpace:function(i){return this.spaces[i].outputColorSpaceConfig.drawingBufferColorSpace},_getUnpackColorSpace:function(i=this.workingColorSpace){return this.spaces[i].workingColorSpaceConfig.unpackColorSpace}};function ls(i){return i<.04045?i*.0773993808:Math.pow(i*.9478672986+.0521327014,2.4)}function no(i){return i<.0031308?i*12.92:1.055*Math.pow(i,.41666)-.055}var Em=[.64,.33,.3,.6,.15,.06],Tm=[.2126,.7152,.0722],Am=[.3127,.329],Cm=new le().set(.4123908,.3575843,.1804808,.212639,.7151687,.0721923,.0193308,.1191948,.9505322),Rm=new le().set(3.2409699,-1.5373832,-.4986108,-.9692436,1.8759675,.0415551,.0556301,-.203977,1.0569715);ve.define({[_o]:{primaries:Em,whitePoint:Am,transfer:ic,toXYZ:Cm,fromXYZ:Rm,luminanceCoefficients:Tm,workingColorSpaceConfig:{unpackColorSpace:ai},outputColorSpaceConfig:{drawingBufferColorSpace:ai}},[ai]:{primaries:Em,whitePoint:Am,transfer:Le,toXYZ:Cm,fromXYZ:Rm,luminanceCoefficients:Tm,outputColorSpaceConfig:{drawingBufferColorSpace:ai}}});var Br,Xu=class{static getDataURL(t){if(/^data:/i.test(t.src)||typeof HTMLCanvasElement>"u")return t.src;let e;if(t instanceof HTMLCanvasElement)e=t;else{Br===void 0&&(Br=Sl("canvas")),Br.width=t.width,Br.height=t.height;let n=Br.getContext("2d");t instanceof ImageData?n.putImageData(t,0,0):n.drawImage(t,0,0,t.width,t.height),e=Br}return e.width>2048||e.height>2048?(console.warn("THREE.ImageUtils.getDataURL: Image converted to jpg for performance reasons",t),e.toDataURL("image/jpeg",.6)):e.toDataURL("image/png")}static sRGBToLinear(t){if(typeof HTMLImageElement<"u"&&t instanceof HTMLImageElement||typeof HTMLCanvasElement<"u"&&t instanceof HTMLCanvasElement||typeof ImageBitmap<"u"&&t instanceof ImageBitmap){let e=Sl("canvas");e.width=t.width,e.height=t.height;let n=e.getContext("2d");n.drawImage(t,0,0,t.width,t.height);let s=n.getImageData(0,0,t.width,t.height),r=s.data;for(let o=0;o<r.length;o++)r[o]=ls(r[o]/255)*255;return n.putImageData(s,0,0),e}else if(t.data){let e=t.data.slice(0);for(let n=0;n<e.length;n++)e instanceof Uint8Array||e instanceof Uint8ClampedArray?e[n]=Math.floor(ls(e[n]/255)*255):e[n]=ls(e[n]);return{data:e,width:t.width,height:t.height}}else return console.warn("THREE.ImageUtils.sRGBToLinear(): Unsupported image type. No color space conversion applied."),t}},Ev=0,bl=class{constructor(t=null){this.isSource=!0,Object.defineProperty(this,"id",{value:Ev++}),this.uuid=Bi(),this.data=t,this.dataReady=!0,this.version=0}set needsUpdate(t){t===!0&&this.version++}toJSON(t){let e=t===void 0||typeof t=="string";if(!e&&t.images[this.uuid]!==void 0)return t.images[this.uuid];let n={uuid:this.uuid,url:""},s=this.data;if(s!==null){let r;if(Array.isArray(s)){r=[];for(let o=0,a=s.length;o<a;o++)s[o].isDataTexture?r.push(Ah(s[o].image)):r.push(Ah(s[o]))}else r=Ah(s);n.url=r}return e||(t.images[this.uuid]=n),n}};function Ah(i){return typeof HTMLImageElement<"u"&&i instanceof HTMLImageElement||typeof HTMLCanvasElement<"u"&&i instanceof HTMLCanvasElement||typeof ImageBitmap<"u"&&i instanceof ImageBitmap?Xu.getDataURL(i):i.data?{data:Array.from(i.data),width:i.width,height:i.height,type:i.data.constructor.name}:(console.warn("THREE.Texture: Unable to serialize Texture."),{})}var Tv=0,li=class i extends hs{constructor(t=i.DEFAULT_IMAGE,e=i.DEFAULT_MAPPING,n=sr,s=sr,r=Oi,o=rr,a=bi,l=cs,c=i.DEFAULT_ANISOTROPY,u=Rs){super(),this.isTexture=!0,Object.defineProperty(this,"id",{value:Tv++}),this.uuid=Bi(),this.name="",this.source=new bl(t),this.mipmaps=[],this.mapping=e,this.channel=0,this.wrapS=n,this.wrapT=s,this.magFilter=r,this.minFilter=o,this.anisotropy=c,this.format=a,this.internalFormat=null,this.type=l,this.offset=new gt(0,0),this.repeat=new gt(1,1),this.center=new gt(0,0),this.rotation=0,this.matrixAutoUpdate=!0,this.matrix=new le,this.generateMipmaps=!0,this.premultiplyAlpha=!1,this.flipY=!0,this.unpackAlignment=4,this.colorSpace=u,this.userData={},this.version=0,this.onUpdate=null,this.isRenderTargetTexture=!1,this.pmremVersion=0}get image(){return this.source.data}set image(t=null){this.source.data=t}updateMatrix(){this.matrix.setUvTransform(this.offset.x,this.offset.y,this.repeat.x,this.repeat.y,this.rotation,this.center.x,this.center.y)}clone(){return new this.constructor().copy(this)}copy(t){return this.name=t.name,this.source=t.source,this.mipmaps=t.mipmaps.slice(0),this.mapping=t.mapping,this.channel=t.channel,this.wrapS=t.wrapS,this.wrapT=t.wrapT,this.magFilter=t.magFilter,this.minFilter=t.minFilter,this.anisotropy=t.anisotropy,this.format=t.format,this.internalFormat=t.internalFormat,this.type=t.type,this.offset.copy(t.offset),this.repeat.copy(t.repeat),this.center.copy(t.center),this.rotation=t.rotation,this.matrixAutoUpdate=t.matrixAutoUpdate,this.matrix.copy(t.matrix),this.generateMipmaps=t.generateMipmaps,this.premultiplyAlpha=t.premultiplyAlpha,this.flipY=t.flipY,this.unpackAlignment=t.unpackAlignment,this.colorSpace=t.colorSpace,this.userData=JSON.parse(JSON.stringify(t.userData)),this.needsUpdate=!0,this}toJSON(t){let e=t===void 0||typeof t=="string";if(!e&&t.textures[this.uuid]!==void 0)return t.textures[this.uuid];let n={metadata:{version:4.6,type:"Texture",generator:"Texture.toJSON"},uuid:this.uuid,name:this.name,image:this.source.toJSON(t).uuid,mapping:this.mapping,channel:this.channel,repeat:[this.repeat.x,this.repeat.y],offset:[this.offset.x,this.offset.y],center:[this.center.x,this.center.y],rotation:this.rotation,wrap:[this.wrapS,this.wrapT],format:this.format,internalFormat:this.internalFormat,type:this.type,colorSpace:this.colorSpace,minFilter:this.minFilter,magFilter:this.magFilter,anisotropy:this.anisotropy,flipY:this.flipY,generateMipmaps:this.generateMipmaps,premultiplyAlpha:this.premultiplyAlpha,unpackAlignment:this.unpackAlignment};return Object.keys(this.userData).length>0&&(n.userData=this.userData),e||(t.textures[this.uuid]=n),n}dispose(){this.dispatchEvent({type:"dispose"})}transformUv(t){if(this.mapping!==Ag)return t;if(t.applyMatrix3(this.matrix),t.x<0||t.x>1)switch(this.wrapS){case mu:t.x=t.x-Math.floor(t.x);break;case sr:t.x=t.x<0?0:1;break;case gu:Math.abs(Math.floor(t.x)%2)===1?t.x=Math.ceil(t.x)-t.x:t.x=t.x-Math.floor(t.x);break}if(t.y<0||t.y>1)switch(this.wrapT){case mu:t.y=t.y-Math.floor(t.y);break;case sr:t.y=t.y<0?0:1;break;case gu:Math.abs(Math.floor(t.y)%2)===1?t.y=Math.ceil(t.y)-t.y:t.y=t.y-Math.floor(t.y);break}return this.flipY&&(t.y=1-t.y),t}set needsUpdate(t){t===!0&&(this.version++,this.source.needsUpdate=!0)}set needsPMREMUpdate(t){t===!0&&this.pmremVersion++}};li.DEFAULT_IMAGE=null;li.DEFAULT_MAPPING=Ag;li.DEFAULT_ANISOTROPY=1;var De=class i{constructor(t=0,e=0,n=0,s=1){i.prototype.isVector4=!0,this.x=t,this.y=e,this.z=n,this.w=s}get width(){return this.z}set width(t){this.z=t}get height(){return this.w}set height(t){this.w=t}set(t,e,n,s){return this.x=t,this.y=e,this.z=n,this.w=s,this}setScalar(t){return this.x=t,this.y=t,this.z=t,this.w=t,this}setX(t){return this.x=t,this}setY(t){return this.y=t,this}setZ(t){return this.z=t,this}setW(t){return this.w=t,this}setComponent(t,e){switch(t){case 0:this.x=e;break;case 1:this.y=e;break;case 2:this.z=e;break;case 3:this.w=e;break;default:throw new Error("index is out of range: "+t)}return this}getComponent(t){switch(t){case 0:return this.x;case 1:return this.y;case 2:return this.z;case 3:return this.w;default:throw new Error("index is out of range: "+t)}}clone(){return new this.constructor(this.x,this.y,this.z,this.w)}copy(t){return this.x=t.x,this.y=t.y,this.z=t.z,this.w=t.w!==void 0?t.w:1,this}add(t){return this.x+=t.x,this.y+=t.y,this.z+=t.z,this.w+=t.w,this}addScalar(t){return this.x+=t,this.y+=t,this.z+=t,this.w+=t,this}addVectors(t,e){return this.x=t.x+e.x,this.y=t.y+e.y,this.z=t.z+e.z,this.w=t.w+e.w,this}addScaledVector(t,e){return this.x+=t.x*e,this.y+=t.y*e,this.z+=t.z*e,this.w+=t.w*e,this}sub(t){return this.x-=t.x,this.y-=t.y,this.z-=t.z,this.w-=t.w,this}subScalar(t){return this.x-=t,this.y-=t,this.z-=t,this.w-=t,this}subVectors(t,e){return this.x=t.x-e.x,this.y=t.y-e.y,this.z=t.z-e.z,this.w=t.w-e.w,this}multiply(t){return this.x*=t.x,this.y*=t.y,this.z*=t.z,this.w*=t.w,this}multiplyScalar(t){return this.x*=t,this.y*=t,this.z*=t,this.w*=t,this}applyMatrix4(t){let e=this.x,n=this.y,s=this.z,r=this.w,o=t.elements;return this.x=o[0]*e+o[4]*n+o[8]*s+o[12]*r,this.y=o[1]*e+o[5]*n+o[9]*s+o[13]*r,this.z=o[2]*e+o[6]*n+o[10]*s+o[14]*r,this.w=o[3]*e+o[7]*n+o[11]*s+o[15]*r,this}divide(t){return this.x/=t.x,this.y/=t.y,this.z/=t.z,this.w/=t.w,this}divideScalar(t){return this.multiplyScalar(1/t)}setAxisAngleFromQuaternion(t){this.w=2*Math.acos(t.w);let e=Math.sqrt(1-t.w*t.w);return e<1e-4?(this.x=1,this.y=0,this.z=0):(this.x=t.x/e,this.y=t.y/e,this.z=t.z/e),this}setAxisAngleFromRotationMatrix(t){let e,n,s,r,l=t.elements,c=l[0],u=l[4],d=l[8],h=l[1],f=l[5],g=l[9],_=l[2],m=l[6],p=l[10];if(Math.abs(u-h)<.01&&Math.abs(d-_)<.01&&Math.abs(g-m)<.01){if(Math.abs(u+h)<.1&&Math.abs(d+_)<.1&&Math.abs(g+m)<.1&&Math.abs(c+f+p-3)<.1)return this.set(1,0,0,0),this;e=Math.PI;let y=(c+1)/2,v=(f+1)/2,N=(p+1)/2,P=(u+h)/4,R=(d+_)/4,F=(g+m)/4;return y>v&&y>N?y<.01?(n=0,s=.707106781,r=.707106781):(n=Math.sqrt(y),s=P/n,r=R/n):v>N?v<.01?(n=.707106781,s=0,r=.707106781):(s=Math.sqrt(v),n=P/s,r=F/s):N<.01?(n=.707106781,s=.707106781,r=0):(r=Math.sqrt(N),n=R/r,s=F/r),this.set(n,s,r,e),this}let b=Math.sqrt((m-g)*(m-g)+(d-_)*(d-_)+(h-u)*(h-u));return Math.abs(b)<.001&&(b=1),this.x=(m-g)/b,this.y=(d-_)/b,this.z=(h-u)/b,this.w=Math.acos((c+f+p-1)/2),this}setFromMatrixPosition(t){let e=t.elements;return this.x=e[12],this.y=e[13],this.z=e[14],this.w=e[15],this}min(t){return this.x=Math.min(this.x,t.x),this.y=Math.min(this.y,t.y),this.z=Math.min(this.z,t.z),this.w=Math.min(this.w,t.w),this}max(t){return this.x=Math.max(this.x,t.x),this.y=Math.max(this.y,t.y),this.z=Math.max(this.z,t.z),this.w=Math.max(this.w,t.w),this}clamp(t,e){return this.x=Math.max(t.x,Math.min(e.x,this.x)),this.y=Math.max(t.y,Math.min(e.y,this.y)),this.z=Math.max(t.z,Math.min(e.z,this.z)),this.w=Math.max(t.w,Math.min(e.w,this.w)),this}clampScalar(t,e){return this.x=Math.max(t,Math.min(e,this.x)),this.y=Math.max(t,Math.min(e,this.y)),this.z=Math.max(t,Math.min(e,this.z)),this.w=Math.max(t,Math.min(e,this.w)),this}clampLength(t,e){let n=this.length();return this.divideScalar(n||1).multiplyScalar(Math.max(t,Math.min(e,n)))}floor(){return this.x=Math.floor(this.x),this.y=Math.floor(this.y),this.z=Math.floor(this.z),this.w=Math.floor(this.w),this}ceil(){return this.x=Math.ceil(this.x),this.y=Math.ceil(this.y),this.z=Math.ceil(this.z),this.w=Math.ceil(this.w),this}round(){return this.x=Math.round(this.x),this.y=Math.round(this.y),this.z=Math.round(this.z),this.w=Math.round(this.w),this}roundToZero(){return this.x=Math.trunc(this.x),this.y=Math.trunc(this.y),this.z=Math.trunc(this.z),this.w=Math.trunc(this.w),this}negate(){return this.x=-this.x,this.y=-this.y,this.z=-this.z,this.w=-this.w,this}dot(t){return this.x*t.x+this.y*t.y+this.z*t.z+this.w*t.w}lengthSq(){return this.x*this.x+this.y*this.y+this.z*this.z+this.w*this.w}length(){return Math.sqrt(this.x*this.x+this.y*this.y+this.z*this.z+this.w*this.w)}manhattanLength(){return Math.abs(this.x)+Math.abs(this.y)+Math.abs(this.z)+Math.abs(this.w)}normalize(){return this.divideScalar(this.length()||1)}setLength(t){return this.normalize().multiplyScalar(t)}lerp(t,e){return this.x+=(t.x-this.x)*e,this.y+=(t.y-this.y)*e,this.z+=(t.z-this.z)*e,this.w+=(t.w-this.w)*e,this}lerpVectors(t,e,n){return this.x=t.x+(e.x-t.x)*n,this.y=t.y+(e.y-t.y)*n,this.z=t.z+(e.z-t.z)*n,this.w=t.w+(e.w-t.w)*n,this}equals(t){return t.x===this.x&&t.y===this.y&&t.z===this.z&&t.w===this.w}fromArray(t,e=0){return this.x=t[e],this.y=t[e+1],this.z=t[e+2],this.w=t[e+3],this}toArray(t=[],e=0){return t[e]=this.x,t[e+1]=this.y,t[e+2]=this.z,t[e+3]=this.w,t}fromBufferAttribute(t,e){return this.x=t.getX(e),this.y=t.getY(e),this.z=t.getZ(e),this.w=t.getW(e),this}random(){return this.x=Math.random(),this.y=Math.random(),this.z=Math.random(),this.w=Math.random(),this}*[Symbol.iterator](){yield this.x,yield this.y,yield this.z,yield this.w}},qu=class extends hs{constructor(t=1,e=1,n={}){super(),this.isRenderTarget=!0,this.width=t,this.height=e,this.depth=1,this.scissor=new De(0,0,t,e),this.scissorTest=!1,this.viewport=new De(0,0,t,e);let s={width:t,height:e,depth:1};n=Object.assign({generateMipmaps:!1,internalFormat:null,minFilter:Oi,depthBuffer:!0,stencilBuffer:!1,resolveDepthBuffer:!0,resolveStencilBuffer:!0,depthTexture:null,samples:0,count:1},n);let r=new li(s,n.mapping,n.wrapS,n.wrapT,n.magFilter,n.minFilter,n.format,n.type,n.anisotropy,n.colorSpace);r.flipY=!1,r.generateMipmaps=n.generateMipmaps,r.internalFormat=n.internalFormat,this.textures=[];let o=n.count;for(let a=0;a<o;a++)this.textures[a]=r.clone(),this.textures[a].isRenderTargetTexture=!0;this.depthBuffer=n.depthBuffer,this.stencilBuffer=n.stencilBuffer,this.resolveDepthBuffer=n.resolveDepthBuffer,this.resolveStencilBuffer=n.resolveStencilBuffer,this.depthTexture=n.depthTexture,this.samples=n.samples}get texture(){return this.textures[0]}set texture(t){this.textures[0]=t}setSize(t,e,n=1){if(this.width!==t||this.height!==e||this.depth!==n){this.width=t,this.height=e,this.depth=n;for(let s=0,r=this.textures.length;s<r;s++)this.textures[s].image.width=t,this.textures[s].image.height=e,this.textures[s].image.depth=n;this.dispose()}this.viewport.set(0,0,t,e),this.scissor.set(0,0,t,e)}clone(){return new this.constructor().copy(this)}copy(t){this.width=t.width,this.height=t.height,this.depth=t.depth,this.scissor.copy(t.scissor),this.scissorTest=t.scissorTest,this.viewport.copy(t.viewport),this.textures.length=0;for(let n=0,s=t.textures.length;n<s;n++)this.textures[n]=t.textures[n].clone(),this.textures[n].isRenderTargetTexture=!0;let e=Object.assign({},t.texture.image);return this.texture.source=new bl(e),this.depthBuffer=t.depthBuffer,this.stencilBuffer=t.stencilBuffer,this.resolveDepthBuffer=t.resolveDepthBuffer,this.resolveStencilBuffer=t.resolveStencilBuffer,t.depthTexture!==null&&(this.depthTexture=t.depthTexture.clone()),this.samples=t.samples,this}dispose(){this.dispatchEvent({type:"dispose"})}},us=class extends qu{constructor(t=1,e=1,n={}){super(t,e,n),this.isWebGLRenderTarget=!0}},wl=class extends li{constructor(t=null,e=1,n=1,s=1){super(null),this.isDataArrayTexture=!0,this.image={data:t,width:e,height:n,depth:s},this.magFilter=wi,this.minFilter=wi,this.wrapR=sr,this.generateMipmaps=!1,this.flipY=!1,this.unpackAlignment=1,this.layerUpdates=new Set}addLayerUpdate(t){this.layerUpdates.add(t)}clearLayerUpdates(){this.layerUpdates.clear()}};var Yu=class extends li{constructor(t=null,e=1,n=1,s=1){super(null),this.isData3DTexture=!0,this.image={data:t,width:e,height:n,depth:s},this.magFilter=wi,this.minFilter=wi,this.wrapR=sr,this.generateMipmaps=!1,this.flipY=!1,this.unpackAlignment=1}};var kn=class{constructor(t=0,e=0,n=0,s=1){this.isQuaternion=!0,this._x=t,this._y=e,this._z=n,this._w=s}static slerpFlat(t,e,n,s,r,o,a){let l=n[s+0],c=n[s+1],u=n[s+2],d=n[s+3],h=r[o+0],f=r[o+1],g=r[o+2],_=r[o+3];if(a===0){t[e+0]=l,t[e+1]=c,t[e+2]=u,t[e+3]=d;return}if(a===1){t[e+0]=h,t[e+1]=f,t[e+2]=g,t[e+3]=_;return}if(d!==_||l!==h||c!==f||u!==g){let m=1-a,p=l*h+c*f+u*g+d*_,b=p>=0?1:-1,y=1-p*p;if(y>Number.EPSILON){let N=Math.sqrt(y),P=Math.atan2(N,p*b);m=Math.sin(m*P)/N,a=Math.sin(a*P)/N}let v=a*b;if(l=l*m+h*v,c=c*m+f*v,u=u*m+g*v,d=d*m+_*v,m===1-a){let N=1/Math.sqrt(l*l+c*c+u*u+d*d);l*=N,c*=N,u*=N,d*=N}}t[e]=l,t[e+1]=c,t[e+2]=u,t[e+3]=d}static multiplyQuaternionsFlat(t,e,n,s,r,o){let a=n[s],l=n[s+1],c=n[s+2],u=n[s+3],d=r[o],h=r[o+1],f=r[o+2],g=r[o+3];return t[e]=a*g+u*d+l*f-c*h,t[e+1]=l*g+u*h+c*d-a*f,t[e+2]=c*g+u*f+a*h-l*d,t[e+3]=u*g-a*d-l*h-c*f,t}get x(){return this._x}set x(t){this._x=t,this._onChangeCallback()}get y(){return this._y}set y(t){this._y=t,this._onChangeCallback()}get z(){return this._z}set z(t){this._z=t,this._onChangeCallback()}get w(){return this._w}set w(t){this._w=t,this._onChangeCallback()}set(t,e,n,s){return this._x=t,this._y=e,this._z=n,this._w=s,this._onChangeCallback(),this}clone(){return new this.constructor(this._x,this._y,this._z,this._w)}copy(t){return this._x=t.x,this._y=t.y,this._z=t.z,this._w=t.w,this._onChangeCallback(),this}setFromEuler(t,e=!0){let n=t._x,s=t._y,r=t._z,o=t._order,a=Math.cos,l=Math.sin,c=a(n/2),u=a(s/2),d=a(r/2),h=l(n/2),f=l(s/2),g=l(r/2);switch(o){case"XYZ":this._x=h*u*d+c*f*g,this._y=c*f*d-h*u*g,this._z=c*u*g+h*f*d,this._w=c*u*d-h*f*g;break;case"YXZ":this._x=h*u*d+c*f*g,this._y=c*f*d-h*u*g,this._z=c*u*g-h*f*d,this._w=c*u*d+h*f*g;break;case"ZXY":this._x=h*u*d-c*f*g,this._y=c*f*d+h*u*g,this._z=c*u*g+h*f*d,this._w=c*u*d-h*f*g;break;case"ZYX":this._x=h*u*d-c*f*g,this._y=c*f*d+h*u*g,this._z=c*u*g-h*f*d,this._w=c*u*d+h*f*g;break;case"YZX":this._x=h*u*d+c*f*g,this._y=c*f*d+h*u*g,this._z=c*u*g-h*f*d,this._w=c*u*d-h*f*g;break;case"XZY":this._x=h*u*d-c*f*g,this._y=c*f*d-h*u*g,this._z=c*u*g+h*f*d,this._w=c*u*d+h*f*g;break;default:console.warn("THREE.Quaternion: .setFromEuler() encountered an unknown order: "+o)}return e===!0&&this._onChangeCallback(),this}setFromAxisAngle(t,e){let n=e/2,s=Math.sin(n);return this._x=t.x*s,this._y=t.y*s,this._z=t.z*s,this._w=Math.cos(n),this._onChangeCallback(),this}setFromRotationMatrix(t){let e=t.elements,n=e[0],s=e[4],r=e[8],o=e[1],a=e[5],l=e[9],c=e[2],u=e[6],d=e[10],h=n+a+d;if(h>0){let f=.5/Math.sqrt(h+1);this._w=.25/f,this._x=(u-l)*f,this._y=(r-c)*f,this._z=(o-s)*f}else if(n>a&&n>d){let f=2*Math.sqrt(1+n-a-d);this._w=(u-l)/f,this._x=.25*f,this._y=(s+o)/f,this._z=(r+c)/f}else if(a>d){let f=2*Math.sqrt(1+a-n-d);this._w=(r-c)/f,this._x=(s+o)/f,this._y=.25*f,this._z=(l+u)/f}else{let f=2*Math.sqrt(1+d-n-a);this._w=(o-s)/f,this._x=(r+c)/f,this._y=(l+u)/f,this._z=.25*f}return this._onChangeCallback(),this}setFromUnitVectors(t,e){let n=t.dot(e)+1;return n<Number.EPSILON?(n=0,Math.abs(t.x)>Math.abs(t.z)?(this._x=-t.y,this._y=t.x,this._z=0,this._w=n):(this._x=0,this._y=-t.z,this._z=t.y,this._w=n)):(this._x=t.y*e.z-t.z*e.y,this._y=t.z*e.x-t.x*e.z,this._z=t.x*e.y-t.y*e.x,this._w=n),this.normalize()}angleTo(t){return 2*Math.acos(Math.abs(on(this.dot(t),-1,1)))}rotateTowards(t,e){let n=this.angleTo(t);if(n===0)return this;let s=Math.min(1,e/n);return this.slerp(t,s),this}identity(){return this.set(0,0,0,1)}invert(){return this.conjugate()}conjugate(){return this._x*=-1,this._y*=-1,this._z*=-1,this._onChangeCallback(),this}dot(t){return this._x*t._x+this._y*t._y+this._z*t._z+this._w*t._w}lengthSq(){return this._x*this._x+this._y*this._y+this._z*this._z+this._w*this._w}length(){return Math.sqrt(this._x*this._x+this._y*this._y+this._z*this._z+this._w*this._w)}normalize(){let t=this.length();return t===0?(this._x=0,this._y=0,this._z=0,this._w=1):(t=1/t,this._x=this._x*t,this._y=this._y*t,this._z=this._z*t,this._w=this._w*t),this._onChangeCallback(),this}multiply(t){return this.multiplyQuaternions(this,t)}premultiply(t){return this.multiplyQuaternions(t,this)}multiplyQuaternions(t,e){let n=t._x,s=t._y,r=t._z,o=t._w,a=e._x,l=e._y,c=e._z,u=e._w;return this._x=n*u+o*a+s*c-r*l,this._y=s*u+o*l+r*a-n*c,this._z=r*u+o*c+n*l-s*a,this._w=o*u-n*a-s*l-r*c,this._onChangeCallback(),this}slerp(t,e){if(e===0)return this;if(e===1)return this.copy(t);let n=this._x,s=this._y,r=this._z,o=this._w,a=o*t._w+n*t._x+s*t._y+r*t._z;if(a<0?(this._w=-t._w,this._x=-t._x,this._y=-t._y,this._z=-t._z,a=-a):this.copy(t),a>=1)return this._w=o,this._x=n,this._y=s,this._z=r,this;let l=1-a*a;if(l<=Number.EPSILON){let f=1-e;return this._w=f*o+e*this._w,this._x=f*n+e*this._x,this._y=f*s+e*this._y,this._z=f*r+e*this._z,this.normalize(),this}let c=Math.sqrt(l),u=Math.atan2(c,a),d=Math.sin((1-e)*u)/c,h=Math.sin(e*u)/c;return this._w=o*d+this._w*h,this._x=n*d+this._x*h,this._y=s*d+this._y*h,this._z=r*d+this._z*h,this._onChangeCallback(),this}slerpQuaternions(t,e,n){return this.copy(t).slerp(e,n)}random(){let t=2*Math.PI*Math.random(),e=2*Math.PI*Math.random(),n=Math.random(),s=Math.sqrt(1-n),r=Math.sqrt(n);return this.set(s*Math.sin(t),s*Math.cos(t),r*Math.sin(e),r*Math.cos(e))}equals(t){return t._x===this._x&&t._y===this._y&&t._z===this._z&&t._w===this._w}fromArray(t,e=0){return this._x=t[e],this._y=t[e+1],this._z=t[e+2],this._w=t[e+3],this._onChangeCallback(),this}toArray(t=[],e=0){return t[e]=this._x,t[e+1]=this._y,t[e+2]=this._z,t[e+3]=this._w,t}fromBufferAttribute(t,e){return this._x=t.getX(e),this._y=t.getY(e),this._z=t.getZ(e),this._w=t.getW(e),this._onChangeCallback(),this}toJSON(){return this.toArray()}_onChange(t){return this._onChangeCallback=t,this}_onChangeCallback(){}*[Symbol.iterator](){yield this._x,yield this._y,yield this._z,yield this._w}},D=class i{constructor(t=0,e=0,n=0){i.prototype.isVector3=!0,this.x=t,this.y=e,this.z=n}set(t,e,n){return n===void 0&&(n=this.z),this.x=t,this.y=e,this.z=n,this}setScalar(t){return this.x=t,this.y=t,this.z=t,this}setX(t){return this.x=t,this}setY(t){return this.y=t,this}setZ(t){return this.z=t,this}setComponent(t,e){switch(t){case 0:this.x=e;break;case 1:this.y=e;break;case 2:this.z=e;break;default:throw new Error("index is out of range: "+t)}return this}getComponent(t){switch(t){case 0:return this.x;case 1:return this.y;case 2:return this.z;default:throw new Error("index is out of range: "+t)}}clone(){return new this.constructor(this.x,this.y,this.z)}copy(t){return this.x=t.x,this.y=t.y,this.z=t.z,this}add(t){return this.x+=t.x,this.y+=t.y,this.z+=t.z,this}addScalar(t){return this.x+=t,this.y+=t,this.z+=t,this}addVectors(t,e){return this.x=t.x+e.x,this.y=t.y+e.y,this.z=t.z+e.z,this}addScaledVector(t,e){return this.x+=t.x*e,this.y+=t.y*e,this.z+=t.z*e,this}sub(t){return this.x-=t.x,this.y-=t.y,this.z-=t.z,this}subScalar(t){return this.x-=t,this.y-=t,this.z-=t,this}subVectors(t,e){return this.x=t.x-e.x,this.y=t.y-e.y,this.z=t.z-e.z,this}multiply(t){return this.x*=t.x,this.y*=t.y,this.z*=t.z,this}multiplyScalar(t){return this.x*=t,this.y*=t,this.z*=t,this}multiplyVectors(t,e){return this.x=t.x*e.x,this.y=t.y*e.y,this.z=t.z*e.z,this}applyEuler(t){return this.applyQuaternion(Pm.setFromEuler(t))}applyAxisAngle(t,e){return this.applyQuaternion(Pm.setFromAxisAngle(t,e))}applyMatrix3(t){let e=this.x,n=this.y,s=this.z,r=t.elements;return this.x=r[0]*e+r[3]*n+r[6]*s,this.y=r[1]*e+r[4]*n+r[7]*s,this.z=r[2]*e+r[5]*n+r[8]*s,this}applyNormalMatrix(t){return this.applyMatrix3(t).normalize()}applyMatrix4(t){let e=this.x,n=this.y,s=this.z,r=t.elements,o=1/(r[3]*e+r[7]*n+r[11]*s+r[15]);return this.x=(r[0]*e+r[4]*n+r[8]*s+r[12])*o,this.y=(r[1]*e+r[5]*n+r[9]*s+r[13])*o,this.z=(r[2]*e+r[6]*n+r[10]*s+r[14])*o,this}applyQuaternion(t){let e=this.x,n=this.y,s=this.z,r=t.x,o=t.y,a=t.z,l=t.w,c=2*(o*s-a*n),u=2*(a*e-r*s),d=2*(r*n-o*e);return this.x=e+l*c+o*d-a*u,this.y=n+l*u+a*c-r*d,this.z=s+l*d+r*u-o*c,this}project(t){return this.applyMatrix4(t.matrixWorldInverse).applyMatrix4(t.projectionMatrix)}unproject(t){return this.applyMatrix4(t.projectionMatrixInverse).applyMatrix4(t.matrixWorld)}transformDirection(t){let e=this.x,n=this.y,s=this.z,r=t.elements;return this.x=r[0]*e+r[4]*n+r[8]*s,this.y=r[1]*e+r[5]*n+r[9]*s,this.z=r[2]*e+r[6]*n+r[10]*s,this.normalize()}divide(t){return this.x/=t.x,this.y/=t.y,this.z/=t.z,this}divideScalar(t){return this.multiplyScalar(1/t)}min(t){return this.x=Math.min(this.x,t.x),this.y=Math.min(this.y,t.y),this.z=Math.min(this.z,t.z),this}max(t){return this.x=Math.max(this.x,t.x),this.y=Math.max(this.y,t.y),this.z=Math.max(this.z,t.z),this}clamp(t,e){return this.x=Math.max(t.x,Math.min(e.x,this.x)),this.y=Math.max(t.y,Math.min(e.y,this.y)),this.z=Math.max(t.z,Math.min(e.z,this.z)),this}clampScalar(t,e){return this.x=Math.max(t,Math.min(e,this.x)),this.y=Math.max(t,Math.min(e,this.y)),this.z=Math.max(t,Math.min(e,this.z)),this}clampLength(t,e){let n=this.length();return this.divideScalar(n||1).multiplyScalar(Math.max(t,Math.min(e,n)))}floor(){return this.x=Math.floor(this.x),this.y=Math.floor(this.y),this.z=Math.floor(this.z),this}ceil(){return this.x=Math.ceil(this.x),this.y=Math.ceil(this.y),this.z=Math.ceil(this.z),this}round(){return this.x=Math.round(this.x),this.y=Math.round(this.y),this.z=Math.round(this.z),this}roundToZero(){return this.x=Math.trunc(this.x),this.y=Math.trunc(this.y),this.z=Math.trunc(this.z),this}negate(){return this.x=-this.x,this.y=-this.y,this.z=-this.z,this}dot(t){return this.x*t.x+this.y*t.y+this.z*t.z}lengthSq(){return this.x*this.x+this.y*this.y+this.z*this.z}length(){return Math.sqrt(this.x*this.x+this.y*this.y+this.z*this.z)}manhattanLength(){return Math.abs(this.x)+Math.abs(this.y)+Math.abs(this.z)}normalize(){return this.divideScalar(this.length()||1)}setLength(t){return this.normalize().multiplyScalar(t)}lerp(t,e){return this.x+=(t.x-this.x)*e,this.y+=(t.y-this.y)*e,this.z+=(t.z-this.z)*e,this}lerpVectors(t,e,n){return this.x=t.x+(e.x-t.x)*n,this.y=t.y+(e.y-t.y)*n,this.z=t.z+(e.z-t.z)*n,this}cross(t){return this.crossVectors(this,t)}crossVectors(t,e){let n=t.x,s=t.y,r=t.z,o=e.x,a=e.y,l=e.z;return this.x=s*l-r*a,this.y=r*o-n*l,this.z=n*a-s*o,this}projectOnVector(t){let e=t.lengthSq();if(e===0)return this.set(0,0,0);let n=t.dot(this)/e;return this.copy(t).multiplyScalar(n)}projectOnPlane(t){return Ch.copy(this).projectOnVector(t),this.sub(Ch)}reflect(t){return this.sub(Ch.copy(t).multiplyScalar(2*this.dot(t)))}angleTo(t){let e=Math.sqrt(this.lengthSq()*t.lengthSq());if(e===0)return Math.PI/2;let n=this.dot(t)/e;return Math.acos(on(n,-1,1))}distanceTo(t){return Math.sqrt(this.distanceToSquared(t))}distanceToSquared(t){let e=this.x-t.x,n=this.y-t.y,s=this.z-t.z;return e*e+n*n+s*s}manhattanDistanceTo(t){return Math.abs(this.x-t.x)+Math.abs(this.y-t.y)+Math.abs(this.z-t.z)}setFromSpherical(t){return this.setFromSphericalCoords(t.radius,t.phi,t.theta)}setFromSphericalCoords(t,e,n){let s=Math.sin(e)*t;return this.x=s*Math.sin(n),this.y=Math.cos(e)*t,this.z=s*Math.cos(n),this}setFromCylindrical(t){return this.setFromCylindricalCoords(t.radius,t.theta,t.y)}setFromCylindricalCoords(t,e,n){return this.x=t*Math.sin(e),this.y=n,this.z=t*Math.cos(e),this}setFromMatrixPosition(t){let e=t.elements;return this.x=e[12],this.y=e[13],this.z=e[14],this}setFromMatrixScale(t){let e=this.setFromMatrixColumn(t,0).length(),n=this.setFromMatrixColumn(t,1).length(),s=this.setFromMatrixColumn(t,2).length();return this.x=e,this.y=n,this.z=s,this}setFromMatrixColumn(t,e){return this.fromArray(t.elements,e*4)}setFromMatrix3Column(t,e){return this.fromArray(t.elements,e*3)}setFromEuler(t){return this.x=t._x,this.y=t._y,this.z=t._z,this}setFromColor(t){return this.x=t.r,this.y=t.g,this.z=t.b,this}equals(t){return t.x===this.x&&t.y===this.y&&t.z===this.z}fromArray(t,e=0){return this.x=t[e],this.y=t[e+1],this.z=t[e+2],this}toArray(t=[],e=0){return t[e]=this.x,t[e+1]=this.y,t[e+2]=this.z,t}fromBufferAttribute(t,e){return this.x=t.getX(e),this.y=t.getY(e),this.z=t.getZ(e),this}random(){return this.x=Math.random(),this.y=Math.random(),this.z=Math.random(),this}randomDirection(){let t=Math.random()*Math.PI*2,e=Math.random()*2-1,n=Math.sqrt(1-e*e);return this.x=n*Math.cos(t),this.y=e,this.z=n*Math.sin(t),this}*[Symbol.iterator](){yield this.x,yield this.y,yield this.z}},Ch=new D,Pm=new kn,ci=class{constructor(t=new D(1/0,1/0,1/0),e=new D(-1/0,-1/0,-1/0)){this.isBox3=!0,this.min=t,this.max=e}set(t,e){return this.min.copy(t),this.max.copy(e),this}setFromArray(t){this.makeEmpty();for(let e=0,n=t.length;e<n;e+=3)this.expandByPoint(xi.fromArray(t,e));return this}setFromBufferAttribute(t){this.makeEmpty();for(let e=0,n=t.count;e<n;e++)this.expandByPoint(xi.fromBufferAttribute(t,e));return this}setFromPoints(t){this.makeEmpty();for(let e=0,n=t.length;e<n;e++)this.expandByPoint(t[e]);return this}setFromCenterAndSize(t,e){let n=xi.copy(e).multiplyScalar(.5);return this.min.copy(t).sub(n),this.max.copy(t).add(n),this}setFromObject(t,e=!1){return this.makeEmpty(),this.expandByObject(t,e)}clone(){return new this.constructor().copy(this)}copy(t){return this.min.copy(t.min),this.max.copy(t.max),this}makeEmpty(){return this.min.x=this.min.y=this.min.z=1/0,this.max.x=this.max.y=this.max.z=-1/0,this}isEmpty(){return this.max.x<this.min.x||this.max.y<this.min.y||this.max.z<this.min.z}getCenter(t){return this.isEmpty()?t.set(0,0,0):t.addVectors(this.min,this.max).multiplyScalar(.5)}getSize(t){return this.isEmpty()?t.set(0,0,0):t.subVectors(this.max,this.min)}expandByPoint(t){return this.min.min(t),this.max.max(t),this}expandByVector(t){return this.min.sub(t),this.max.add(t),this}expandByScalar(t){return this.min.addScalar(-t),this.max.addScalar(t),this}expandByObject(t,e=!1){t.updateWorldMatrix(!1,!1);let n=t.geometry;if(n!==void 0){let r=n.getAttribute("position");if(e===!0&&r!==void 0&&t.isInstancedMesh!==!0)for(let o=0,a=r.count;o<a;o++)t.isMesh===!0?t.getVertexPosition(o,xi):xi.fromBufferAttribute(r,o),xi.applyMatrix4(t.matrixWorld),this.expandByPoint(xi);else t.boundingBox!==void 0?(t.boundingBox===null&&t.computeBoundingBox(),za.copy(t.boundingBox)):(n.boundingBox===null&&n.computeBoundingBox(),za.copy(n.boundingBox)),za.applyMatrix4(t.matrixWorld),this.union(za)}let s=t.children;for(let r=0,o=s.length;r<o;r++)this.expandByObject(s[r],e);return this}containsPoint(t){return t.x>=this.min.x&&t.x<=this.max.x&&t.y>=this.min.y&&t.y<=this.max.y&&t.z>=this.min.z&&t.z<=this.max.z}containsBox(t){return this.min.x<=t.min.x&&t.max.x<=this.max.x&&this.min.y<=t.min.y&&t.max.y<=this.max.y&&this.min.z<=t.min.z&&t.max.z<=this.max.z}getParameter(t,e){return e.set((t.x-this.min.x)/(this.max.x-this.min.x),(t.y-this.min.y)/(this.max.y-this.min.y),(t.z-this.min.z)/(this.max.z-this.min.z))}intersectsBox(t){return t.max.x>=this.min.x&&t.min.x<=this.max.x&&t.max.y>=this.min.y&&t.min.y<=this.max.y&&t.max.z>=this.min.z&&t.min.z<=this.max.z}intersectsSphere(t){return this.clampPoint(t.center,xi),xi.distanceToSquared(t.center)<=t.radius*t.radius}intersectsPlane(t){let e,n;return t.normal.x>0?(e=t.normal.x*this.min.x,n=t.normal.x*this.max.x):(e=t.normal.x*this.max.x,n=t.normal.x*this.min.x),t.normal.y>0?(e+=t.normal.y*this.min.y,n+=t.normal.y*this.max.y):(e+=t.normal.y*this.max.y,n+=t.normal.y*this.min.y),t.normal.z>0?(e+=t.normal.z*this.min.z,n+=t.normal.z*this.max.z):(e+=t.normal.z*this.max.z,n+=t.normal.z*this.min.z),e<=-t.constant&&n>=-t.constant}intersectsTriangle(t){if(this.isEmpty())return!1;this.getCenter(Bo),ka.subVectors(this.max,Bo),zr.subVectors(t.a,Bo),kr.subVectors(t.b,Bo),Vr.subVectors(t.c,Bo),bs.subVectors(kr,zr),ws.subVectors(Vr,kr),Zs.subVectors(zr,Vr);let e=[0,-bs.z,bs.y,0,-ws.z,ws.y,0,-Zs.z,Zs.y,bs.z,0,-bs.x,ws.z,0,-ws.x,Zs.z,0,-Zs.x,-bs.y,bs.x,0,-ws.y,ws.x,0,-Zs.y,Zs.x,0];return!Rh(e,zr,kr,Vr,ka)||(e=[1,0,0,0,1,0,0,0,1],!Rh(e,zr,kr,Vr,ka))?!1:(Va.crossVectors(bs,ws),e=[Va.x,Va.y,Va.z],Rh(e,zr,kr,Vr,ka))}clampPoint(t,e){return e.copy(t).clamp(this.min,this.max)}distanceToPoint(t){return this.clampPoint(t,xi).distanceTo(t)}getBoundingSphere(t){return this.isEmpty()?t.makeEmpty():(this.getCenter(t.center),t.radius=this.getSize(xi).length()*.5),t}intersect(t){return this.min.max(t.min),this.max.min(t.max),this.isEmpty()&&this.makeEmpty(),this}union(t){return this.min.min(t.min),this.max.max(t.max),this}applyMatrix4(t){return this.isEmpty()?this:(ts[0].set(this.min.x,this.min.y,this.min.z).applyMatrix4(t),ts[1].set(this.min.x,this.min.y,this.max.z).applyMatrix4(t),ts[2].set(this.min.x,this.max.y,this.min.z).applyMatrix4(t),ts[3].set(this.min.x,this.max.y,this.max.z).applyMatrix4(t),ts[4].set(this.max.x,this.min.y,this.min.z).applyMatrix4(t),ts[5].set(this.max.x,this.min.y,this.max.z).applyMatrix4(t),ts[6].set(this.max.x,this.max.y,this.min.z).applyMatrix4(t),ts[7].set(this.max.x,this.max.y,this.max.z).applyMatrix4(t),this.setFromPoints(ts),this)}translate(t){return this.min.add(t),this.max.add(t),this}equals(t){return t.min.equals(this.min)&&t.max.equals(this.max)}},ts=[new D,new D,new D,new D,new D,new D,new D,new D],xi=new D,za=new ci,zr=new D,kr=new D,Vr=new D,bs=new D,ws=new D,Zs=new D,Bo=new D,ka=new D,Va=new D,Js=new D;function Rh(i,t,e,n,s){for(let r=0,o=i.length-3;r<=o;r+=3){Js.fromArray(i,r);let a=s.x*Math.abs(Js.x)+s.y*Math.abs(Js.y)+s.z*Math.abs(Js.z),l=t.dot(Js),c=e.dot(Js),u=n.dot(Js);if(Math.max(-Math.max(l,c,u),Math.min(l,c,u))>a)return!1}return!0}var Av=new ci,zo=new D,Ph=new D,zi=class{constructor(t=new D,e=-1){this.isSphere=!0,this.center=t,this.radius=e}set(t,e){return this.center.copy(t),this.radius=e,this}setFromPoints(t,e){let n=this.center;e!==void 0?n.copy(e):Av.setFromPoints(t).getCenter(n);let s=0;for(let r=0,o=t.length;r<o;r++)s=Math.max(s,n.distanceToSquared(t[r]));return this.radius=Math.sqrt(s),this}copy(t){return this.center.copy(t.center),this.radius=t.radius,this}isEmpty(){return this.radius<0}makeEmpty(){return this.center.set(0,0,0),this.radius=-1,this}containsPoint(t){return t.distanceToSquared(this.center)<=this.radius*this.radius}distanceToPoint(t){return t.distanceTo(this.center)-this.radius}intersectsSphere(t){let e=this.radius+t.radius;return t.center.distanceToSquared(this.center)<=e*e}intersectsBox(t){return t.intersectsSphere(this)}intersectsPlane(t){return Math.abs(t.distanceToPoint(this.center))<=this.radius}clampPoint(t,e){let n=this.center.distanceToSquared(t);return e.copy(t),n>this.radius*this.radius&&(e.sub(this.center).normalize(),e.multiplyScalar(this.radius).add(this.center)),e}getBoundingBox(t){return this.isEmpty()?(t.makeEmpty(),t):(t.set(this.center,this.center),t.expandByScalar(this.radius),t)}applyMatrix4(t){return this.center.applyMatrix4(t),this.radius=this.radius*t.getMaxScaleOnAxis(),this}translate(t){return this.center.add(t),this}expandByPoint(t){if(this.isEmpty())return this.center.copy(t),this.radius=0,this;zo.subVectors(t,this.center);let e=zo.lengthSq();if(e>this.radius*this.radius){let n=Math.sqrt(e),s=(n-this.radius)*.5;this.center.addScaledVector(zo,s/n),this.radius+=s}return this}union(t){return t.isEmpty()?this:this.isEmpty()?(this.copy(t),this):(this.center.equals(t.center)===!0?this.radius=Math.max(this.radius,t.radius):(Ph.subVectors(t.center,this.center).setLength(t.radius),this.expandByPoint(zo.copy(t.center).add(Ph)),this.expandByPoint(zo.copy(t.center).sub(Ph))),this)}equals(t){return t.center.equals(this.center)&&t.radius===this.radius}clone(){return new this.constructor().copy(this)}},es=new D,Ih=new D,Ha=new D,Es=new D,Lh=new D,Ga=new D,Dh=new D,co=class{constructor(t=new D,e=new D(0,0,-1)){this.origin=t,this.direction=e}set(t,e){return this.origin.copy(t),this.direction.copy(e),this}copy(t){return this.origin.copy(t.origin),this.direction.copy(t.direction),this}at(t,e){return e.copy(this.origin).addScaledVector(this.direction,t)}lookAt(t){return this.direction.copy(t).sub(this.origin).normalize(),this}recast(t){return this.origin.copy(this.at(t,es)),this}closestPointToPoint(t,e){e.subVectors(t,this.origin);let n=e.dot(this.direction);return n<0?e.copy(this.origin):e.copy(this.origin).addScaledVector(this.direction,n)}distanceToPoint(t){return Math.sqrt(this.distanceSqToPoint(t))}distanceSqToPoint(t){let e=es.subVectors(t,this.origin).dot(this.direction);return e<0?this.origin.distanceToSquared(t):(es.copy(this.origin).addScaledVector(this.direction,e),es.distanceToSquared(t))}distanceSqToSegment(t,e,n,s){Ih.copy(t).add(e).multiplyScalar(.5),Ha.copy(e).sub(t).normalize(),Es.copy(this.origin).sub(Ih);let r=t.distanceTo(e)*.5,o=-this.direction.dot(Ha),a=Es.dot(this.direction),l=-Es.dot(Ha),c=Es.lengthSq(),u=Math.abs(1-o*o),d,h,f,g;if(u>0)if(d=o*l-a,h=o*a-l,g=r*u,d>=0)if(h>=-g)if(h<=g){let _=1/u;d*=_,h*=_,f=d*(d+o*h+2*a)+h*(o*d+h+2*l)+c}else h=r,d=Math.max(0,-(o*h+a)),f=-d*d+h*(h+2*l)+c;else h=-r,d=Math.max(0,-(o*h+a)),f=-d*d+h*(h+2*l)+c;else h<=-g?(d=Math.max(0,-(-o*r+a)),h=d>0?-r:Math.min(Math.max(-r,-l),r),f=-d*d+h*(h+2*l)+c):h<=g?(d=0,h=Math.min(Math.max(-r,-l),r),f=h*(h+2*l)+c):(d=Math.max(0,-(o*r+a)),h=d>0?r:Math.min(Math.max(-r,-l),r),f=-d*d+h*(h+2*l)+c);else h=o>0?-r:r,d=Math.max(0,-(o*h+a)),f=-d*d+h*(h+2*l)+c;return n&&n.copy(this.origin).addScaledVector(this.direction,d),s&&s.copy(Ih).addScaledVector(Ha,h),f}intersectSphere(t,e){es.subVectors(t.center,this.origin);let n=es.dot(this.direction),s=es.dot(es)-n*n,r=t.radius*t.radius;if(s>r)return null;let o=Math.sqrt(r-s),a=n-o,l=n+o;return l<0?null:a<0?this.at(l,e):this.at(a,e)}intersectsSphere(t){return this.distanceSqToPoint(t.center)<=t.radius*t.radius}distanceToPlane(t){let e=t.normal.dot(this.direction);if(e===0)return t.distanceToPoint(this.origin)===0?0:null;let n=-(this.origin.dot(t.normal)+t.constant)/e;return n>=0?n:null}intersectPlane(t,e){let n=this.distanceToPlane(t);return n===null?null:this.at(n,e)}intersectsPlane(t){let e=t.distanceToPoint(this.origin);return e===0||t.normal.dot(this.direction)*e<0}intersectBox(t,e){let n,s,r,o,a,l,c=1/this.direction.x,u=1/this.direction.y,d=1/this.direction.z,h=this.origin;return c>=0?(n=(t.min.x-h.x)*c,s=(t.max.x-h.x)*c):(n=(t.max.x-h.x)*c,s=(t.min.x-h.x)*c),u>=0?(r=(t.min.y-h.y)*u,o=(t.max.y-h.y)*u):(r=(t.max.y-h.y)*u,o=(t.min.y-h.y)*u),n>o||r>s||((r>n||isNaN(n))&&(n=r),(o<s||isNaN(s))&&(s=o),d>=0?(a=(t.min.z-h.z)*d,l=(t.max.z-h.z)*d):(a=(t.max.z-h.z)*d,l=(t.min.z-h.z)*d),n>l||a>s)||((a>n||n!==n)&&(n=a),(l<s||s!==s)&&(s=l),s<0)?null:this.at(n>=0?n:s,e)}intersectsBox(t){return this.intersectBox(t,es)!==null}intersectTriangle(t,e,n,s,r){Lh.subVectors(e,t),Ga.subVectors(n,t),Dh.crossVectors(Lh,Ga);let o=this.direction.dot(Dh),a;if(o>0){if(s)return null;a=1}else if(o<0)a=-1,o=-o;else return null;Es.subVectors(this.origin,t);let l=a*this.direction.dot(Ga.crossVectors(Es,Ga));if(l<0)return null;let c=a*this.direction.dot(Lh.cross(Es));if(c<0||l+c>o)return null;let u=-a*Es.dot(Dh);return u<0?null:this.at(u/o,r)}applyMatrix4(t){return this.origin.applyMatrix4(t),this.direction.transformDirection(t),this}equals(t){return t.origin.equals(this.origin)&&t.direction.equals(this.direction)}clone(){return new this.constructor().copy(this)}},Ge=class i{constructor(t,e,n,s,r,o,a,l,c,u,d,h,f,g,_,m){i.prototype.isMatrix4=!0,this.elements=[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],t!==void 0&&this.set(t,e,n,s,r,o,a,l,c,u,d,h,f,g,_,m)}set(t,e,n,s,r,o,a,l,c,u,d,h,f,g,_,m){let p=this.elements;return p[0]=t,p[4]=e,p[8]=n,p[12]=s,p[1]=r,p[5]=o,p[9]=a,p[13]=l,p[2]=c,p[6]=u,p[10]=d,p[14]=h,p[3]=f,p[7]=g,p[11]=_,p[15]=m,this}identity(){return this.set(1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1),this}clone(){return new i().fromArray(this.elements)}copy(t){let e=this.elements,n=t.elements;return e[0]=n[0],e[1]=n[1],e[2]=n[2],e[3]=n[3],e[4]=n[4],e[5]=n[5],e[6]=n[6],e[7]=n[7],e[8]=n[8],e[9]=n[9],e[10]=n[10],e[11]=n[11],e[12]=n[12],e[13]=n[13],e[14]=n[14],e[15]=n[15],this}copyPosition(t){let e=this.elements,n=t.elements;return e[12]=n[12],e[13]=n[13],e[14]=n[14],this}setFromMatrix3(t){let e=t.elements;return this.set(e[0],e[3],e[6],0,e[1],e[4],e[7],0,e[2],e[5],e[8],0,0,0,0,1),this}extractBasis(t,e,n){return t.setFromMatrixColumn(this,0),e.setFromMatrixColumn(this,1),n.setFromMatrixColumn(this,2),this}makeBasis(t,e,n){return this.set(t.x,e.x,n.x,0,t.y,e.y,n.y,0,t.z,e.z,n.z,0,0,0,0,1),this}extractRotation(t){let e=this.elements,n=t.elements,s=1/Hr.setFromMatrixColumn(t,0).length(),r=1/Hr.setFromMatrixColumn(t,1).length(),o=1/Hr.setFromMatrixColumn(t,2).length();return e[0]=n[0]*s,e[1]=n[1]*s,e[2]=n[2]*s,e[3]=0,e[4]=n[4]*r,e[5]=n[5]*r,e[6]=n[6]*r,e[7]=0,e[8]=n[8]*o,e[9]=n[9]*o,e[10]=n[10]*o,e[11]=0,e[12]=0,e[13]=0,e[14]=0,e[15]=1,this}makeRotationFromEuler(t){let e=this.elements,n=t.x,s=t.y,r=t.z,o=Math.cos(n),a=Math.sin(n),l=Math.cos(s),c=Math.sin(s),u=Math.cos(r),d=Math.sin(r);if(t.order==="XYZ"){let h=o*u,f=o*d,g=a*u,_=a*d;e[0]=l*u,e[4]=-l*d,e[8]=c,e[1]=f+g*c,e[5]=h-_*c,e[9]=-a*l,e[2]=_-h*c,e[6]=g+f*c,e[10]=o*l}else if(t.order==="YXZ"){let h=l*u,f=l*d,g=c*u,_=c*d;e[0]=h+_*a,e[4]=g*a-f,e[8]=o*c,e[1]=o*d,e[5]=o*u,e[9]=-a,e[2]=f*a-g,e[6]=_+h*a,e[10]=o*l}else if(t.order==="ZXY"){let h=l*u,f=l*d,g=c*u,_=c*d;e[0]=h-_*a,e[4]=-o*d,e[8]=g+f*a,e[1]=f+g*a,e[5]=o*u,e[9]=_-h*a,e[2]=-o*c,e[6]=a,e[10]=o*l}else if(t.order==="ZYX"){let h=o*u,f=o*d,g=a*u,_=a*d;e[0]=l*u,e[4]=g*c-f,e[8]=h*c+_,e[1]=l*d,e[5]=_*c+h,e[9]=f*c-g,e[2]=-c,e[6]=a*l,e[10]=o*l}else if(t.order==="YZX"){let h=o*l,f=o*c,g=a*l,_=a*c;e[0]=l*u,e[4]=_-h*d,e[8]=g*d+f,e[1]=d,e[5]=o*u,e[9]=-a*u,e[2]=-c*u,e[6]=f*d+g,e[10]=h-_*d}else if(t.order==="XZY"){let h=o*l,f=o*c,g=a*l,_=a*c;e[0]=l*u,e[4]=-d,e[8]=c*u,e[1]=h*d+_,e[5]=o*u,e[9]=f*d-g,e[2]=g*d-f,e[6]=a*u,e[10]=_*d+h}return e[3]=0,e[7]=0,e[11]=0,e[12]=0,e[13]=0,e[14]=0,e[15]=1,this}makeRotationFromQuaternion(t){return this.compose(Cv,t,Rv)}lookAt(t,e,n){let s=this.elements;return $n.subVectors(t,e),$n.lengthSq()===0&&($n.z=1),$n.normalize(),Ts.crossVectors(n,$n),Ts.lengthSq()===0&&(Math.abs(n.z)===1?$n.x+=1e-4:$n.z+=1e-4,$n.normalize(),Ts.crossVectors(n,$n)),Ts.normalize(),Wa.crossVectors($n,Ts),s[0]=Ts.x,s[4]=Wa.x,s[8]=$n.x,s[1]=Ts.y,s[5]=Wa.y,s[9]=$n.y,s[2]=Ts.z,s[6]=Wa.z,s[10]=$n.z,this}multiply(t){return this.multiplyMatrices(this,t)}premultiply(t){return this.multiplyMatrices(t,this)}multiplyMatrices(t,e){let n=t.elements,s=e.elements,r=this.elements,o=n[0],a=n[4],l=n[8],c=n[12],u=n[1],d=n[5],h=n[9],f=n[13],g=n[2],_=n[6],m=n[10],p=n[14],b=n[3],y=n[7],v=n[11],N=n[15],P=s[0],R=s[4],F=s[8],E=s[12],M=s[1],A=s[5],W=s[9],G=s[13],X=s[2],Z=s[6],Y=s[10],nt=s[14],Q=s[3],ft=s[7],at=s[11],_t=s[15];return r[0]=o*P+a*M+l*X+c*Q,r[4]=o*R+a*A+l*Z+c*ft,r[8]=o*F+a*W+l*Y+c*at,r[12]=o*E+a*G+l*nt+c*_t,r[1]=u*P+d*M+h*X+f*Q,r[5]=u*R+d*A+h*Z+f*ft,r[9]=u*F+d*W+h*Y+f*at,r[13]=u*E+d*G+h*nt+f*_t,r[2]=g*P+_*M+m*X+p*Q,r[6]=g*R+_*A+m*Z+p*ft,r[10]=g*F+_*W+m*Y+p*at,r[14]=g*E+_*G+m*nt+p*_t,r[3]=b*P+y*M+v*X+N*Q,r[7]=b*R+y*A+v*Z+N*ft,r[11]=b*F+y*W+v*Y+N*at,r[15]=b*E+y*G+v*nt+N*_t,this}multiplyScalar(t){let e=this.elements;return e[0]*=t,e[4]*=t,e[8]*=t,e[12]*=t,e[1]*=t,e[5]*=t,e[9]*=t,e[13]*=t,e[2]*=t,e[6]*=t,e[10]*=t,e[14]*=t,e[3]*=t,e[7]*=t,e[11]*=t,e[15]*=t,this}determinant(){let t=this.elements,e=t[0],n=t[4],s=t[8],r=t[12],o=t[1],a=t[5],l=t[9],c=t[13],u=t[2],d=t[6],h=t[10],f=t[14],g=t[3],_=t[7],m=t[11],p=t[15];return g*(+r*l*d-s*c*d-r*a*h+n*c*h+s*a*f-n*l*f)+_*(+e*l*f-e*c*h+r*o*h-s*o*f+s*c*u-r*l*u)+m*(+e*c*d-e*a*f-r*o*d+n*o*f+r*a*u-n*c*u)+p*(-s*a*u-e*l*d+e*a*h+s*o*d-n*o*h+n*l*u)}transpose(){let t=this.elements,e;return e=t[1],t[1]=t[4],t[4]=e,e=t[2],t[2]=t[8],t[8]=e,e=t[6],t[6]=t[9],t[9]=e,e=t[3],t[3]=t[12],t[12]=e,e=t[7],t[7]=t[13],t[13]=e,e=t[11],t[11]=t[14],t[14]=e,this}setPosition(t,e,n){let s=this.elements;return t.isVector3?(s[12]=t.x,s[13]=t.y,s[14]=t.z):(s[12]=t,s[13]=e,s[14]=n),this}invert(){let t=this.elements,e=t[0],n=t[1],s=t[2],r=t[3],o=t[4],a=t[5],l=t[6],c=t[7],u=t[8],d=t[9],h=t[10],f=t[11],g=t[12],_=t[13],m=t[14],p=t[15],b=d*m*c-_*h*c+_*l*f-a*m*f-d*l*p+a*h*p,y=g*h*c-u*m*c-g*l*f+o*m*f+u*l*p-o*h*p,v=u*_*c-g*d*c+g*a*f-o*_*f-u*a*p+o*d*p,N=g*d*l-u*_*l-g*a*h+o*_*h+u*a*m-o*d*m,P=e*b+n*y+s*v+r*N;if(P===0)return this.set(0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0);let R=1/P;return t[0]=b*R,t[1]=(_*h*r-d*m*r-_*s*f+n*m*f+d*s*p-n*h*p)*R,t[2]=(a*m*r-_*l*r+_*s*c-n*m*c-a*s*p+n*l*p)*R,t[3]=(d*l*r-a*h*r-d*s*c+n*h*c+a*s*f-n*l*f)*R,t[4]=y*R,t[5]=(u*m*r-g*h*r+g*s*f-e*m*f-u*s*p+e*h*p)*R,t[6]=(g*l*r-o*m*r-g*s*c+e*m*c+o*s*p-e*l*p)*R,t[7]=(o*h*r-u*l*r+u*s*c-e*h*c-o*s*f+e*l*f)*R,t[8]=v*R,t[9]=(g*d*r-u*_*r-g*n*f+e*_*f+u*n*p-e*d*p)*R,t[10]=(o*_*r-g*a*r+g*n*c-e*_*c-o*n*p+e*a*p)*R,t[11]=(u*a*r-o*d*r-u*n*c+e*d*c+o*n*f-e*a*f)*R,t[12]=N*R,t[13]=(u*_*s-g*d*s+g*n*h-e*_*h-u*n*m+e*d*m)*R,t[14]=(g*a*s-o*_*s-g*n*l+e*_*l+o*n*m-e*a*m)*R,t[15]=(o*d*s-u*a*s+u*n*l-e*d*l-o*n*h+e*a*h)*R,this}scale(t){let e=this.elements,n=t.x,s=t.y,r=t.z;return e[0]*=n,e[4]*=s,e[8]*=r,e[1]*=n,e[5]*=s,e[9]*=r,e[2]*=n,e[6]*=s,e[10]*=r,e[3]*=n,e[7]*=s,e[11]*=r,this}getMaxScaleOnAxis(){let t=this.elements,e=t[0]*t[0]+t[1]*t[1]+t[2]*t[2],n=t[4]*t[4]+t[5]*t[5]+t[6]*t[6],s=t[8]*t[8]+t[9]*t[9]+t[10]*t[10];return Math.sqrt(Math.max(e,n,s))}makeTranslation(t,e,n){return t.isVector3?this.set(1,0,0,t.x,0,1,0,t.y,0,0,1,t.z,0,0,0,1):this.set(1,0,0,t,0,1,0,e,0,0,1,n,0,0,0,1),this}makeRotationX(t){let e=Math.cos(t),n=Math.sin(t);return this.set(1,0,0,0,0,e,-n,0,0,n,e,0,0,0,0,1),this}makeRotationY(t){let e=Math.cos(t),n=Math.sin(t);return this.set(e,0,n,0,0,1,0,0,-n,0,e,0,0,0,0,1),this}makeRotationZ(t){let e=Math.cos(t),n=Math.sin(t);return this.set(e,-n,0,0,n,e,0,0,0,0,1,0,0,0,0,1),this}makeRotationAxis(t,e){let n=Math.cos(e),s=Math.sin(e),r=1-n,o=t.x,a=t.y,l=t.z,c=r*o,u=r*a;return this.set(c*o+n,c*a-s*l,c*l+s*a,0,c*a+s*l,u*a+n,u*l-s*o,0,c*l-s*a,u*l+s*o,r*l*l+n,0,0,0,0,1),this}makeScale(t,e,n){return this.set(t,0,0,0,0,e,0,0,0,0,n,0,0,0,0,1),this}makeShear(t,e,n,s,r,o){return this.set(1,n,r,0,t,1,o,0,e,s,1,0,0,0,0,1),this}compose(t,e,n){let s=this.elements,r=e._x,o=e._y,a=e._z,l=e._w,c=r+r,u=o+o,d=a+a,h=r*c,f=r*u,g=r*d,_=o*u,m=o*d,p=a*d,b=l*c,y=l*u,v=l*d,N=n.x,P=n.y,R=n.z;return s[0]=(1-(_+p))*N,s[1]=(f+v)*N,s[2]=(g-y)*N,s[3]=0,s[4]=(f-v)*P,s[5]=(1-(h+p))*P,s[6]=(m+b)*P,s[7]=0,s[8]=(g+y)*R,s[9]=(m-b)*R,s[10]=(1-(h+_))*R,s[11]=0,s[12]=t.x,s[13]=t.y,s[14]=t.z,s[15]=1,this}decompose(t,e,n){let s=this.elements,r=Hr.set(s[0],s[1],s[2]).length(),o=Hr.set(s[4],s[5],s[6]).length(),a=Hr.set(s[8],s[9],s[10]).length();this.determinant()<0&&(r=-r),t.x=s[12],t.y=s[13],t.z=s[14],yi.copy(this);let c=1/r,u=1/o,d=1/a;return yi.elements[0]*=c,yi.elements[1]*=c,yi.elements[2]*=c,yi.elements[4]*=u,yi.elements[5]*=u,yi.elements[6]*=u,yi.elements[8]*=d,yi.elements[9]*=d,yi.elements[10]*=d,e.setFromRotationMatrix(yi),n.x=r,n.y=o,n.z=a,this}makePerspective(t,e,n,s,r,o,a=as){let l=this.elements,c=2*r/(e-t),u=2*r/(n-s),d=(e+t)/(e-t),h=(n+s)/(n-s),f,g;if(a===as)f=-(o+r)/(o-r),g=-2*o*r/(o-r);else if(a===Ml)f=-o/(o-r),g=-o*r/(o-r);else throw new Error("THREE.Matrix4.makePerspective(): Invalid coordinate system: "+a);return l[0]=c,l[4]=0,l[8]=d,l[12]=0,l[1]=0,l[5]=u,l[9]=h,l[13]=0,l[2]=0,l[6]=0,l[10]=f,l[14]=g,l[3]=0,l[7]=0,l[11]=-1,l[15]=0,this}makeOrthographic(t,e,n,s,r,o,a=as){let l=this.elements,c=1/(e-t),u=1/(n-s),d=1/(o-r),h=(e+t)*c,f=(n+s)*u,g,_;if(a===as)g=(o+r)*d,_=-2*d;else if(a===Ml)g=r*d,_=-1*d;else throw new Error("THREE.Matrix4.makeOrthographic(): Invalid coordinate system: "+a);return l[0]=2*c,l[4]=0,l[8]=0,l[12]=-h,l[1]=0,l[5]=2*u,l[9]=0,l[13]=-f,l[2]=0,l[6]=0,l[10]=_,l[14]=-g,l[3]=0,l[7]=0,l[11]=0,l[15]=1,this}equals(t){let e=this.elements,n=t.elements;for(let s=0;s<16;s++)if(e[s]!==n[s])return!1;return!0}fromArray(t,e=0){for(let n=0;n<16;n++)this.elements[n]=t[n+e];return this}toArray(t=[],e=0){let n=this.elements;return t[e]=n[0],t[e+1]=n[1],t[e+2]=n[2],t[e+3]=n[3],t[e+4]=n[4],t[e+5]=n[5],t[e+6]=n[6],t[e+7]=n[7],t[e+8]=n[8],t[e+9]=n[9],t[e+10]=n[10],t[e+11]=n[11],t[e+12]=n[12],t[e+13]=n[13],t[e+14]=n[14],t[e+15]=n[15],t}},Hr=new D,yi=new Ge,Cv=new D(0,0,0),Rv=new D(1,1,1),Ts=new D,Wa=new D,$n=new D,Im=new Ge,Lm=new kn,ki=class i{constructor(t=0,e=0,n=0,s=i.DEFAULT_ORDER){this.isEuler=!0,this._x=t,this._y=e,this._z=n,this._order=s}get x(){return this._x}set x(t){this._x=t,this._onChangeCallback()}get y(){return this._y}set y(t){this._y=t,this._onChangeCallback()}get z(){return this._z}set z(t){this._z=t,this._onChangeCallback()}get order(){return this._order}set order(t){this._order=t,this._onChangeCallback()}set(t,e,n,s=this._order){return this._x=t,this._y=e,this._z=n,this._order=s,this._onChangeCallback(),this}clone(){return new this.constructor(this._x,this._y,this._z,this._order)}copy(t){return this._x=t._x,this._y=t._y,this._z=t._z,this._order=t._order,this._onChangeCallback(),this}setFromRotationMatrix(t,e=this._order,n=!0){let s=t.elements,r=s[0],o=s[4],a=s[8],l=s[1],c=s[5],u=s[9],d=s[2],h=s[6],f=s[10];switch(e){case"XYZ":this._y=Math.asin(on(a,-1,1)),Math.abs(a)<.9999999?(this._x=Math.atan2(-u,f),this._z=Math.atan2(-o,r)):(this._x=Math.atan2(h,c),this._z=0);break;case"YXZ":this._x=Math.asin(-on(u,-1,1)),Math.abs(u)<.9999999?(this._y=Math.atan2(a,f),this._z=Math.atan2(l,c)):(this._y=Math.atan2(-d,r),this._z=0);break;case"ZXY":this._x=Math.asin(on(h,-1,1)),Math.abs(h)<.9999999?(this._y=Math.atan2(-d,f),this._z=Math.atan2(-o,c)):(this._y=0,this._z=Math.atan2(l,r));break;case"ZYX":this._y=Math.asin(-on(d,-1,1)),Math.abs(d)<.9999999?(this._x=Math.atan2(h,f),this._z=Math.atan2(l,r)):(this._x=0,this._z=Math.atan2(-o,c));break;case"YZX":this._z=Math.asin(on(l,-1,1)),Math.abs(l)<.9999999?(this._x=Math.atan2(-u,c),this._y=Math.atan2(-d,r)):(this._x=0,this._y=Math.atan2(a,f));break;case"XZY":this._z=Math.asin(-on(o,-1,1)),Math.abs(o)<.9999999?(this._x=Math.atan2(h,c),this._y=Math.atan2(a,r)):(this._x=Math.atan2(-u,f),this._y=0);break;default:console.warn("THREE.Euler: .setFromRotationMatrix() encountered an unknown order: "+e)}return this._order=e,n===!0&&this._onChangeCallback(),this}setFromQuaternion(t,e,n){return Im.makeRotationFromQuaternion(t),this.setFromRotationMatrix(Im,e,n)}setFromVector3(t,e=this._order){return this.set(t.x,t.y,t.z,e)}reorder(t){return Lm.setFromEuler(this),this.setFromQuaternion(Lm,t)}equals(t){return t._x===this._x&&t._y===this._y&&t._z===this._z&&t._order===this._order}fromArray(t){return this._x=t[0],this._y=t[1],this._z=t[2],t[3]!==void 0&&(this._order=t[3]),this._onChangeCallback(),this}toArray(t=[],e=0){return t[e]=this._x,t[e+1]=this._y,t[e+2]=this._z,t[e+3]=this._order,t}_onChange(t){return this._onChangeCallback=t,this}_onChangeCallback(){}*[Symbol.iterator](){yield this._x,yield this._y,yield this._z,yield this._order}};ki.DEFAULT_ORDER="XYZ";var El=class{constructor(){this.mask=1}set(t){this.mask=(1<<t|0)>>>0}enable(t){this.mask|=1<<t|0}enableAll(){this.mask=-1}toggle(t){this.mask^=1<<t|0}disable(t){this.mask&=~(1<<t|0)}disableAll(){this.mask=0}test(t){return(this.mask&t.mask)!==0}isEnabled(t){return(this.mask&(1<<t|0))!==0}},Pv=0,Dm=new D,Gr=new kn,ns=new Ge,Xa=new D,ko=new D,Iv=new D,Lv=new kn,Um=new D(1,0,0),Nm=new D(0,1,0),Fm=new D(0,0,1),Om={type:"added"},Dv={type:"removed"},Wr={type:"childadded",child:null},Uh={type:"childremoved",child:null},Tn=class i extends hs{constructor(){super(),this.isObject3D=!0,Object.defineProperty(this,"id",{value:Pv++}),this.uuid=Bi(),this.name="",this.type="Object3D",this.parent=null,this.children=[],this.up=i.DEFAULT_UP.clone();let t=new D,e=new ki,n=new kn,s=new D(1,1,1);function r(){n.setFromEuler(e,!1)}function o(){e.setFromQuaternion(n,void 0,!1)}e._onChange(r),n._onChange(o),Object.defineProperties(this,{position:{configurable:!0,enumerable:!0,value:t},rotation:{configurable:!0,enumerable:!0,value:e},quaternion:{configurable:!0,enumerable:!0,value:n},scale:{configurable:!0,enumerable:!0,value:s},modelViewMatrix:{value:new Ge},normalMatrix:{value:new le}}),this.matrix=new Ge,this.matrixWorld=new Ge,this.matrixAutoUpdate=i.DEFAULT_MATRIX_AUTO_UPDATE,this.matrixWorldAutoUpdate=i.DEFAULT_MATRIX_WORLD_AUTO_UPDATE,this.matrixWorldNeedsUpdate=!1,this.layers=new El,this.visible=!0,this.castShadow=!1,this.receiveShadow=!1,this.frustumCulled=!0,this.renderOrder=0,this.animations=[],this.userData={}}onBeforeShadow(){}onAfterShadow(){}onBeforeRender(){}onAfterRender(){}applyMatrix4(t){this.matrixAutoUpdate&&this.updateMatrix(),this.matrix.premultiply(t),this.matrix.decompose(this.position,this.quaternion,this.scale)}applyQuaternion(t){return this.quaternion.premultiply(t),this}setRotationFromAxisAngle(t,e){this.quaternion.setFromAxisAngle(t,e)}setRotationFromEuler(t){this.quaternion.setFromEuler(t,!0)}setRotationFromMatrix(t){this.quaternion.setFromRotationMatrix(t)}setRotationFromQuaternion(t){this.quaternion.copy(t)}rotateOnAxis(t,e){return Gr.setFromAxisAngle(t,e),this.quaternion.multiply(Gr),this}rotateOnWorldAxis(t,e){return Gr.setFromAxisAngle(t,e),this.quaternion.premultiply(Gr),this}rotateX(t){return this.rotateOnAxis(Um,t)}rotateY(t){return this.rotateOnAxis(Nm,t)}rotateZ(t){return this.rotateOnAxis(Fm,t)}translateOnAxis(t,e){return Dm.copy(t).applyQuaternion(this.quaternion),this.position.add(Dm.multiplyScalar(e)),this}translateX(t){return this.translateOnAxis(Um,t)}translateY(t){return this.translateOnAxis(Nm,t)}translateZ(t){return this.translateOnAxis(Fm,t)}localToWorld(t){return this.updateWorldMatrix(!0,!1),t.applyMatrix4(this.matrixWorld)}worldToLocal(t){return this.updateWorldMatrix(!0,!1),t.applyMatrix4(ns.copy(this.matrixWorld).invert())}lookAt(t,e,n){t.isVector3?Xa.copy(t):Xa.set(t,e,n);let s=this.parent;this.updateWorldMatrix(!0,!1),ko.setFromMatrixPosition(this.matrixWorld),this.isCamera||this.isLight?ns.lookAt(ko,Xa,this.up):ns.lookAt(Xa,ko,this.up),this.quaternion.setFromRotationMatrix(ns),s&&(ns.extractRotation(s.matrixWorld),Gr.setFromRotationMatrix(ns),this.quaternion.premultiply(Gr.invert()))}add(t){if(arguments.length>1){for(let e=0;e<arguments.length;e++)this.add(arguments[e]);return this}return t===this?(console.error("THREE.Object3D.add: object can't be added as a child of itself.",t),this):(t&&t.isObject3D?(t.removeFromParent(),t.parent=this,this.children.push(t),t.dispatchEvent(Om),Wr.child=t,this.dispatchEvent(Wr),Wr.child=null):console.error("THREE.Object3D.add: object not an instance of THREE.Object3D.",t),this)}remove(t){if(arguments.length>1){for(let n=0;n<arguments.length;n++)this.remove(arguments[n]);return this}let e=this.children.indexOf(t);return e!==-1&&(t.parent=null,this.children.splice(e,1),t.dispatchEvent(Dv),Uh.child=t,this.dispatchEvent(Uh),Uh.child=null),this}removeFromParent(){let t=this.parent;return t!==null&&t.remove(this),this}clear(){return this.remove(...this.children)}attach(t){return this.updateWorldMatrix(!0,!1),ns.copy(this.matrixWorld).invert(),t.parent!==null&&(t.parent.updateWorldMatrix(!0,!1),ns.multiply(t.parent.matrixWorld)),t.applyMatrix4(ns),t.removeFromParent(),t.parent=this,this.children.push(t),t.updateWorldMatrix(!1,!0),t.dispatchEvent(Om),Wr.child=t,this.dispatchEvent(Wr),Wr.child=null,this}getObjectById(t){return this.getObjectByProperty("id",t)}getObjectByName(t){return this.getObjectByProperty("name",t)}getObjectByProperty(t,e){if(this[t]===e)return this;for(let n=0,s=this.children.length;n<s;n++){let o=this.children[n].getObjectByProperty(t,e);if(o!==void 0)return o}}getObjectsByProperty(t,e,n=[]){this[t]===e&&n.push(this);let s=this.children;for(let r=0,o=s.length;r<o;r++)s[r].getObjectsByProperty(t,e,n);return n}getWorldPosition(t){return this.updateWorldMatrix(!0,!1),t.setFromMatrixPosition(this.matrixWorld)}getWorldQuaternion(t){return this.updateWorldMatrix(!0,!1),this.matrixWorld.decompose(ko,t,Iv),t}getWorldScale(t){return this.updateWorldMatrix(!0,!1),this.matrixWorld.decompose(ko,Lv,t),t}getWorldDirection(t){this.updateWorldMatrix(!0,!1);let e=this.matrixWorld.elements;return t.set(e[8],e[9],e[10]).normalize()}raycast(){}traverse(t){t(this);let e=this.children;for(let n=0,s=e.length;n<s;n++)e[n].traverse(t)}traverseVisible(t){if(this.visible===!1)return;t(this);let e=this.children;for(let n=0,s=e.length;n<s;n++)e[n].traverseVisible(t)}traverseAncestors(t){let e=this.parent;e!==null&&(t(e),e.traverseAncestors(t))}updateMatrix(){this.matrix.compose(this.position,this.quaternion,this.scale),this.matrixWorldNeedsUpdate=!0}updateMatrixWorld(t){this.matrixAutoUpdate&&this.updateMatrix(),(this.matrixWorldNeedsUpdate||t)&&(this.matrixWorldAutoUpdate===!0&&(this.parent===null?this.matrixWorld.copy(this.matrix):this.matrixWorld.multiplyMatrices(this.parent.matrixWorld,this.matrix)),this.matrixWorldNeedsUpdate=!1,t=!0);let e=this.children;for(let n=0,s=e.length;n<s;n++)e[n].updateMatrixWorld(t)}updateWorldMatrix(t,e){let n=this.parent;if(t===!0&&n!==null&&n.updateWorldMatrix(!0,!1),this.matrixAutoUpdate&&this.updateMatrix(),this.matrixWorldAutoUpdate===!0&&(this.parent===null?this.matrixWorld.copy(this.matrix):this.matrixWorld.multiplyMatrices(this.parent.matrixWorld,this.matrix)),e===!0){let s=this.children;for(let r=0,o=s.length;r<o;r++)s[r].updateWorldMatrix(!1,!0)}}toJSON(t){let e=t===void 0||typeof t=="string",n={};e&&(t={geometries:{},materials:{},textures:{},images:{},shapes:{},skeletons:{},animations:{},nodes:{}},n.metadata={version:4.6,type:"Object",generator:"Object3D.toJSON"});let s={};s.uuid=this.uuid,s.type=this.type,this.name!==""&&(s.name=this.name),this.castShadow===!0&&(s.castShadow=!0),this.receiveShadow===!0&&(s.receiveShadow=!0),this.visible===!1&&(s.visible=!1),this.frustumCulled===!1&&(s.frustumCulled=!1),this.renderOrder!==0&&(s.renderOrder=this.renderOrder),Object.keys(this.userData).length>0&&(s.userData=this.userData),s.layers=this.layers.mask,s.matrix=this.matrix.toArray(),s.up=this.up.toArray(),this.matrixAutoUpdate===!1&&(s.matrixAutoUpdate=!1),this.isInstancedMesh&&(s.type="InstancedMesh",s.count=this.count,s.instanceMatrix=this.instanceMatrix.toJSON(),this.instanceColor!==null&&(s.instanceColor=this.instanceColor.toJSON())),this.isBatchedMesh&&(s.type="BatchedMesh",s.perObjectFrustumCulled=this.perObjectFrustumCulled,s.sortObjects=this.sortObjects,s.drawRanges=this._drawRanges,s.reservedRanges=this._reservedRanges,s.visibility=this._visibility,s.active=this._active,s.bounds=this._bounds.map(a=>({boxInitialized:a.boxInitialized,boxMin:a.box.min.toArray(),boxMax:a.box.max.toArray(),sphereInitialized:a.sphereInitialized,sphereRadius:a.sphere.radius,sphereCenter:a.sphere.center.toArray()})),s.maxInstanceCount=this._maxInstanceCount,s.maxVertexCount=this._maxVertexCount,s.maxIndexCount=this._maxIndexCount,s.geometryInitialized=this._geometryInitialized,s.geometryCount=this._geometryCount,s.matricesTexture=this._matricesTexture.toJSON(t),this._colorsTexture!==null&&(s.colorsTexture=this._colorsTexture.toJSON(t)),this.boundingSphere!==null&&(s.boundingSphere={center:s.boundingSphere.center.toArray(),radius:s.boundingSphere.radius}),this.boundingBox!==null&&(s.boundingBox={min:s.boundingBox.min.toArray(),max:s.boundingBox.max.toArray()}));function r(a,l){return a[l.uuid]===void 0&&(a[l.uuid]=l.toJSON(t)),l.uuid}if(this.isScene)this.background&&(this.background.isColor?s.background=this.background.toJSON():this.background.isTexture&&(s.background=this.background.toJSON(t).uuid)),this.environment&&this.environment.isTexture&&this.environment.isRenderTargetTexture!==!0&&(s.environment=this.environment.toJSON(t).uuid);else if(this.isMesh||this.isLine||this.isPoints){s.geometry=r(t.geometries,this.geometry);let a=this.geometry.parameters;if(a!==void 0&&a.shapes!==void 0){let l=a.shapes;if(Array.isArray(l))for(let c=0,u=l.length;c<u;c++){let d=l[c];r(t.shapes,d)}else r(t.shapes,l)}}if(this.isSkinnedMesh&&(s.bindMode=this.bindMode,s.bindMatrix=this.bindMatrix.toArray(),this.skeleton!==void 0&&(r(t.skeletons,this.skeleton),s.skeleton=this.skeleton.uuid)),this.material!==void 0)if(Array.isArray(this.material)){let a=[];for(let l=0,c=this.material.length;l<c;l++)a.push(r(t.materials,this.material[l]));s.material=a}else s.material=r(t.materials,this.material);if(this.children.length>0){s.children=[];for(let a=0;a<this.children.length;a++)s.children.push(this.children[a].toJSON(t).object)}if(this.animations.length>0){s.animations=[];for(let a=0;a<this.animations.length;a++){let l=this.animations[a];s.animations.push(r(t.animations,l))}}if(e){let a=o(t.geometries),l=o(t.materials),c=o(t.textures),u=o(t.images),d=o(t.shapes),h=o(t.skeletons),f=o(t.animations),g=o(t.nodes);a.length>0&&(n.geometries=a),l.length>0&&(n.materials=l),c.length>0&&(n.textures=c),u.length>0&&(n.images=u),d.length>0&&(n.shapes=d),h.length>0&&(n.skeletons=h),f.length>0&&(n.animations=f),g.length>0&&(n.nodes=g)}return n.object=s,n;function o(a){let l=[];for(let c in a){let u=a[c];delete u.metadata,l.push(u)}return l}}clone(t){return new this.constructor().copy(this,t)}copy(t,e=!0){if(this.name=t.name,this.up.copy(t.up),this.position.copy(t.position),this.rotation.order=t.rotation.order,this.quaternion.copy(t.quaternion),this.scale.copy(t.scale),this.matrix.copy(t.matrix),this.matrixWorld.copy(t.matrixWorld),this.matrixAutoUpdate=t.matrixAutoUpdate,this.matrixWorldAutoUpdate=t.matrixWorldAutoUpdate,this.matrixWorldNeedsUpdate=t.matrixWorldNeedsUpdate,this.layers.mask=t.layers.mask,this.visible=t.visible,this.castShadow=t.castShadow,this.receiveShadow=t.receiveShadow,this.frustumCulled=t.frustumCulled,this.renderOrder=t.renderOrder,this.animations=t.animations.slice(),this.userData=JSON.parse(JSON.stringify(t.userData)),e===!0)for(let n=0;n<t.children.length;n++){let s=t.children[n];this.add(s.clone())}return this}};Tn.DEFAULT_UP=new D(0,1,0);Tn.DEFAULT_MATRIX_AUTO_UPDATE=!0;Tn.DEFAULT_MATRIX_WORLD_AUTO_UPDATE=!0;var vi=new D,is=new D,Nh=new D,ss=new D,Xr=new D,qr=new D,Bm=new D,Fh=new D,Oh=new D,Bh=new D,zh=new De,kh=new De,Vh=new De,Fi=class i{constructor(t=new D,e=new D,n=new D){this.a=t,this.b=e,this.c=n}static getNormal(t,e,n,s){s.subVectors(n,e),vi.subVectors(t,e),s.cross(vi);let r=s.lengthSq();return r>0?s.multiplyScalar(1/Math.sqrt(r)):s.set(0,0,0)}static getBarycoord(t,e,n,s,r){vi.subVectors(s,e),is.subVectors(n,e),Nh.subVectors(t,e);let o=vi.dot(vi),a=vi.dot(is),l=vi.dot(Nh),c=is.dot(is),u=is.dot(Nh),d=o*c-a*a;if(d===0)return r.set(0,0,0),null;let h=1/d,f=(c*l-a*u)*h,g=(o*u-a*l)*h;return r.set(1-f-g,g,f)}static containsPoint(t,e,n,s){return this.getBarycoord(t,e,n,s,ss)===null?!1:ss.x>=0&&ss.y>=0&&ss.x+ss.y<=1}static getInterpolation(t,e,n,s,r,o,a,l){return this.getBarycoord(t,e,n,s,ss)===null?(l.x=0,l.y=0,"z"in l&&(l.z=0),"w"in l&&(l.w=0),null):(l.setScalar(0),l.addScaledVector(r,ss.x),l.addScaledVector(o,ss.y),l.addScaledVector(a,ss.z),l)}static getInterpolatedAttribute(t,e,n,s,r,o){return zh.setScalar(0),kh.setScalar(0),Vh.setScalar(0),zh.fromBufferAttribute(t,e),kh.fromBufferAttribute(t,n),Vh.fromBufferAttribute(t,s),o.setScalar(0),o.addScaledVector(zh,r.x),o.addScaledVector(kh,r.y),o.addScaledVector(Vh,r.z),o}static isFrontFacing(t,e,n,s){return vi.subVectors(n,e),is.subVectors(t,e),vi.cross(is).dot(s)<0}set(t,e,n){return this.a.copy(t),this.b.copy(e),this.c.copy(n),this}setFromPointsAndIndices(t,e,n,s){return this.a.copy(t[e]),this.b.copy(t[n]),this.c.copy(t[s]),this}setFromAttributeAndIndices(t,e,n,s){return this.a.fromBufferAttribute(t,e),this.b.fromBufferAttribute(t,n),this.c.fromBufferAttribute(t,s),this}clone(){return new this.constructor().copy(this)}copy(t){return this.a.copy(t.a),this.b.copy(t.b),this.c.copy(t.c),this}getArea(){return vi.subVectors(this.c,this.b),is.subVectors(this.a,this.b),vi.cross(is).length()*.5}getMidpoint(t){return t.addVectors(this.a,this.b).add(this.c).multiplyScalar(1/3)}getNormal(t){return i.getNormal(this.a,this.b,this.c,t)}getPlane(t){return t.setFromCoplanarPoints(this.a,this.b,this.c)}getBarycoord(t,e){return i.getBarycoord(t,this.a,this.b,this.c,e)}getInterpolation(t,e,n,s,r){return i.getInterpolation(t,this.a,this.b,this.c,e,n,s,r)}containsPoint(t){return i.containsPoint(t,this.a,this.b,this.c)}isFrontFacing(t){return i.isFrontFacing(this.a,this.b,this.c,t)}intersectsBox(t){return t.intersectsTriangle(this)}closestPointToPoint(t,e){let n=this.a,s=this.b,r=this.c,o,a;Xr.subVectors(s,n),qr.subVectors(r,n),Fh.subVectors(t,n);let l=Xr.dot(Fh),c=qr.dot(Fh);if(l<=0&&c<=0)return e.copy(n);Oh.subVectors(t,s);let u=Xr.dot(Oh),d=qr.dot(Oh);if(u>=0&&d<=u)return e.copy(s);let h=l*d-u*c;if(h<=0&&l>=0&&u<=0)return o=l/(l-u),e.copy(n).addScaledVector(Xr,o);Bh.subVectors(t,r);let f=Xr.dot(Bh),g=qr.dot(Bh);if(g>=0&&f<=g)return e.copy(r);let _=f*c-l*g;if(_<=0&&c>=0&&g<=0)return a=c/(c-g),e.copy(n).addScaledVector(qr,a);let m=u*g-f*d;if(m<=0&&d-u>=0&&f-g>=0)return Bm.subVectors(r,s),a=(d-u)/(d-u+(f-g)),e.copy(s).addScaledVector(Bm,a);let p=1/(m+_+h);return o=_*p,a=h*p,e.copy(n).addScaledVector(Xr,o).addScaledVector(qr,a)}equals(t){return t.a.equals(this.a)&&t.b.equals(this.b)&&t.c.equals(this.c)}},Gg={aliceblue:15792383,antiquewhite:16444375,aqua:65535,aquamarine:8388564,azure:15794175,beige:16119260,bisque:16770244,black:0,blanchedalmond:16772045,blue:255,blueviolet:9055202,brown:10824234,burlywood:14596231,cadetblue:6266528,chartreuse:8388352,chocolate:13789470,coral:16744272,cornflowerblue:6591981,cornsilk:16775388,crimson:14423100,cyan:65535,darkblue:139,darkcyan:35723,darkgoldenrod:12092939,darkgray:11119017,darkgreen:25600,darkgrey:11119017,darkkhaki:12433259,darkmagenta:9109643,darkolivegreen:5597999,darkorange:16747520,darkorchid:10040012,darkred:9109504,darksalmon:15308410,darkseagreen:9419919,darkslateblue:4734347,darkslategray:3100495,darkslategrey:3100495,darkturquoise:52945,darkviolet:9699539,deeppink:16716947,deepskyblue:49151,dimgray:6908265,dimgrey:6908265,dodgerblue:2003199,firebrick:11674146,floralwhite:16775920,forestgreen:2263842,fuchsia:16711935,gainsboro:14474460,ghostwhite:16316671,gold:16766720,goldenrod:14329120,gray:8421504,green:32768,greenyellow:11403055,grey:8421504,honeydew:15794160,hotpink:16738740,indianred:13458524,indigo:4915330,ivory:16777200,khaki:15787660,lavender:15132410,lavenderblush:16773365,lawngreen:8190976,lemonchiffon:16775885,lightblue:11393254,lightcoral:15761536,lightcyan:14745599,lightgoldenrodyellow:16448210,lightgray:13882323,lightgreen:9498256,lightgrey:13882323,lightpink:16758465,lightsalmon:16752762,lightseagreen:2142890,lightskyblue:8900346,lightslategray:7833753,lightslategrey:7833753,lightsteelblue:11584734,lightyellow:16777184,lime:65280,limegreen:3329330,linen:16445670,magenta:16711935,maroon:8388608,mediumaquamarine:6737322,mediumblue:205,mediumorchid:12211667,mediumpurple:9662683,mediumseagreen:3978097,mediumslateblue:8087790,mediumspringgreen:64154,mediumturquoise:4772300,mediumvioletred:13047173,midnightblue:1644912,mintcream:16121850,mistyrose:16770273,moccasin:16770229,navajowhite:16768685,navy:128,oldlace:16643558,olive:8421376,olivedrab:7048739,orange:16753920,orangered:16729344,orchid:14315734,palegoldenrod:15657130,palegreen:10025880,paleturquoise:11529966,palevioletred:14381203,papayawhip:16773077,peachpuff:16767673,peru:13468991,pink:16761035,plum:14524637,powderblue:11591910,purple:8388736,rebeccapurple:6697881,red:16711680,rosybrown:12357519,royalblue:4286945,saddlebrown:9127187,salmon:16416882,sandybrown:16032864,seagreen:3050327,seashell:16774638,sienna:10506797,silver:12632256,skyblue:8900331,slateblue:6970061,slategray:7372944,slategrey:7372944,snow:16775930,springgreen:65407,steelblue:4620980,tan:13808780,teal:32896,thistle:14204888,tomato:16737095,turquoise:4251856,violet:15631086,wheat:16113331,white:16777215,whitesmoke:16119285,yellow:16776960,yellowgreen:10145074},As={h:0,s:0,l:0},qa={h:0,s:0,l:0};function Hh(i,t,e){return e<0&&(e+=1),e>1&&(e-=1),e<1/6?i+(t-i)*6*e:e<1/2?t:e<2/3?i+(t-i)*6*(2/3-e):i}var oe=class{constructor(t,e,n){return this.isColor=!0,this.r=1,this.g=1,this.b=1,this.set(t,e,n)}set(t,e,n){if(e===void 0&&n===void 0){let s=t;s&&s.isColor?this.copy(s):typeof s=="number"?this.setHex(s):typeof s=="string"&&this.setStyle(s)}else this.setRGB(t,e,n);return this}setScalar(t){return this.r=t,this.g=t,this.b=t,this}setHex(t,e=ai){return t=Math.floor(t),this.r=(t>>16&255)/255,this.g=(t>>8&255)/255,this.b=(t&255)/255,ve.toWorkingColorSpace(this,e),this}setRGB(t,e,n,s=ve.workingColorSpace){return this.r=t,this.g=e,this.b=n,ve.toWorkingColorSpace(this,s),this}setHSL(t,e,n,s=ve.workingColorSpace){if(t=Bd(t,1),e=on(e,0,1),n=on(n,0,1),e===0)this.r=this.g=this.b=n;else{let r=n<=.5?n*(1+e):n+e-n*e,o=2*n-r;this.r=Hh(o,r,t+1/3),this.g=Hh(o,r,t),this.b=Hh(o,r,t-1/3)}return ve.toWorkingColorSpace(this,s),this}setStyle(t,e=ai){function n(r){r!==void 0&&parseFloat(r)<1&&console.warn("THREE.Color: Alpha component of "+t+" will be ignored.")}let s;if(s=/^(\w+)\(([^\)]*)\)/.exec(t)){let r,o=s[1],a=s[2];switch(o){case"rgb":case"rgba":if(r=/^\s*(\d+)\s*,\s*(\d+)\s*,\s*(\d+)\s*(?:,\s*(\d*\.?\d+)\s*)?$/.exec(a))return n(r[4]),this.setRGB(Math.min(255,parseInt(r[1],10))/255,Math.min(255,parseInt(r[2],10))/255,Math.min(255,parseInt(r[3],10))/255,e);if(r=/^\s*(\d+)\%\s*,\s*(\d+)\%\s*,\s*(\d+)\%\s*(?:,\s*(\d*\.?\d+)\s*)?$/.exec(a))return n(r[4]),this.setRGB(Math.min(100,parseInt(r[1],10))/100,Math.min(100,parseInt(r[2],10))/100,Math.min(100,parseInt(r[3],10))/100,e);break;case"hsl":case"hsla":if(r=/^\s*(\d*\.?\d+)\s*,\s*(\d*\.?\d+)\%\s*,\s*(\d*\.?\d+)\%\s*(?:,\s*(\d*\.?\d+)\s*)?$/.exec(a))return n(r[4]),this.setHSL(parseFloat(r[1])/360,parseFloat(r[2])/100,parseFloat(r[3])/100,e);break;default:console.warn("THREE.Color: Unknown color model "+t)}}else if(s=/^\#([A-Fa-f\d]+)$/.exec(t)){let r=s[1],o=r.length;if(o===3)return this.setRGB(parseInt(r.charAt(0),16)/15,parseInt(r.charAt(1),16)/15,parseInt(r.charAt(2),16)/15,e);if(o===6)return this.setHex(parseInt(r,16),e);console.warn("THREE.Color: Invalid hex color "+t)}else if(t&&t.length>0)return this.setColorName(t,e);return this}setColorName(t,e=ai){let n=Gg[t.toLowerCase()];return n!==void 0?this.setHex(n,e):console.warn("THREE.Color: Unknown color "+t),this}clone(){return new this.constructor(this.r,this.g,this.b)}copy(t){return this.r=t.r,this.g=t.g,this.b=t.b,this}copySRGBToLinear(t){return this.r=ls(t.r),this.g=ls(t.g),this.b=ls(t.b),this}copyLinearToSRGB(t){return this.r=no(t.r),this.g=no(t.g),this.b=no(t.b),this}convertSRGBToLinear(){return this.copySRGBToLinear(this),this}convertLinearToSRGB(){return this.copyLinearToSRGB(this),this}getHex(t=ai){return ve.fromWorkingColorSpace(En.copy(this),t),Math.round(on(En.r*255,0,255))*65536+Math.round(on(En.g*255,0,255))*256+Math.round(on(En.b*255,0,255))}getHexString(t=ai){return("000000"+this.getHex(t).toString(16)).slice(-6)}getHSL(t,e=ve.workingColorSpace){ve.fromWorkingColorSpace(En.copy(this),e);let n=En.r,s=En.g,r=En.b,o=Math.max(n,s,r),a=Math.min(n,s,r),l,c,u=(a+o)/2;if(a===o)l=0,c=0;else{let d=o-a;switch(c=u<=.5?d/(o+a):d/(2-o-a),o){case n:l=(s-r)/d+(s<r?6:0);break;case s:l=(r-n)/d+2;break;case r:l=(n-s)/d+4;break}l/=6}return t.h=l,t.s=c,t.l=u,t}getRGB(t,e=ve.workingColorSpace){return ve.fromWorkingColorSpace(En.copy(this),e),t.r=En.r,t.g=En.g,t.b=En.b,t}getStyle(t=ai){ve.fromWorkingColorSpace(En.copy(this),t);let e=En.r,n=En.g,s=En.b;return t!==ai?`color(${t} ${e.toFixed(3)} ${n.toFixed(3)} ${s.toFixed(3)})`:`rgb(${Math.round(e*255)},${Math.round(n*255)},${Math.round(s*255)})`}offsetHSL(t,e,n){return this.getHSL(As),this.setHSL(As.h+t,As.s+e,As.l+n)}add(t){return this.r+=t.r,this.g+=t.g,this.b+=t.b,this}addColors(t,e){return this.r=t.r+e.r,this.g=t.g+e.g,this.b=t.b+e.b,this}addScalar(t){return this.r+=t,this.g+=t,this.b+=t,this}sub(t){return this.r=Math.max(0,this.r-t.r),this.g=Math.max(0,this.g-t.g),this.b=Math.max(0,this.b-t.b),this}multiply(t){return this.r*=t.r,this.g*=t.g,this.b*=t.b,this}multiplyScalar(t){return this.r*=t,this.g*=t,this.b*=t,this}lerp(t,e){return this.r+=(t.r-this.r)*e,this.g+=(t.g-this.g)*e,this.b+=(t.b-this.b)*e,this}lerpColors(t,e,n){return this.r=t.r+(e.r-t.r)*n,this.g=t.g+(e.g-t.g)*n,this.b=t.b+(e.b-t.b)*n,this}lerpHSL(t,e){this.getHSL(As),t.getHSL(qa);let n=Xo(As.h,qa.h,e),s=Xo(As.s,qa.s,e),r=Xo(As.l,qa.l,e);return this.setHSL(n,s,r),this}setFromVector3(t){return this.r=t.x,this.g=t.y,this.b=t.z,this}applyMatrix3(t){let e=this.r,n=this.g,s=this.b,r=t.elements;return this.r=r[0]*e+r[3]*n+r[6]*s,this.g=r[1]*e+r[4]*n+r[7]*s,this.b=r[2]*e+r[5]*n+r[8]*s,this}equals(t){return t.r===this.r&&t.g===this.g&&t.b===this.b}fromArray(t,e=0){return this.r=t[e],this.g=t[e+1],this.b=t[e+2],this}toArray(t=[],e=0){return t[e]=this.r,t[e+1]=this.g,t[e+2]=this.b,t}fromBufferAttribute(t,e){return this.r=t.getX(e),this.g=t.getY(e),this.b=t.getZ(e),this}toJSON(){return this.getHex()}*[Symbol.iterator](){yield this.r,yield this.g,yield this.b}},En=new oe;oe.NAMES=Gg;var Uv=0,Us=class extends hs{static get type(){return"Material"}get type(){return this.constructor.type}set type(t){}constructor(){super(),this.isMaterial=!0,Object.defineProperty(this,"id",{value:Uv++}),this.uuid=Bi(),this.name="",this.blending=Qr,this.side=Ds,this.vertexColors=!1,this.opacity=1,this.transparent=!1,this.alphaHash=!1,this.blendSrc=su,this.blendDst=ru,this.blendEquation=nr,this.blendSrcAlpha=null,this.blendDstAlpha=null,this.blendEquationAlpha=null,this.blendColor=new oe(0,0,0),this.blendAlpha=0,this.depthFunc=so,this.depthTest=!0,this.depthWrite=!0,this.stencilWriteMask=255,this.stencilFunc=Mm,this.stencilRef=0,this.stencilFuncMask=255,this.stencilFail=Or,this.stencilZFail=Or,this.stencilZPass=Or,this.stencilWrite=!1,this.clippingPlanes=null,this.clipIntersection=!1,this.clipShadows=!1,this.shadowSide=null,this.colorWrite=!0,this.precision=null,this.polygonOffset=!1,this.polygonOffsetFactor=0,this.polygonOffsetUnits=0,this.dithering=!1,this.alphaToCoverage=!1,this.premultipliedAlpha=!1,this.forceSinglePass=!1,this.visible=!0,this.toneMapped=!0,this.userData={},this.version=0,this._alphaTest=0}get alphaTest(){return this._alphaTest}set alphaTest(t){this._alphaTest>0!=t>0&&this.version++,this._alphaTest=t}onBeforeRender(){}onBeforeCompile(){}customProgramCacheKey(){return this.onBeforeCompile.toString()}setValues(t){if(t!==void 0)for(let e in t){let n=t[e];if(n===void 0){console.warn(`THREE.Material: parameter '${e}' has value of undefined.`);continue}let s=this[e];if(s===void 0){console.warn(`THREE.Material: '${e}' is not a property of THREE.${this.type}.`);continue}s&&s.isColor?s.set(n):s&&s.isVector3&&n&&n.isVector3?s.copy(n):this[e]=n}}toJSON(t){let e=t===void 0||typeof t=="string";e&&(t={textures:{},images:{}});let n={metadata:{version:4.6,type:"Material",generator:"Material.toJSON"}};n.uuid=this.uuid,n.type=this.type,this.name!==""&&(n.name=this.name),this.color&&this.color.isColor&&(n.color=this.color.getHex()),this.roughness!==void 0&&(n.roughness=this.roughness),this.metalness!==void 0&&(n.metalness=this.metalness),this.sheen!==void 0&&(n.sheen=this.sheen),this.sheenColor&&this.sheenColor.isColor&&(n.sheenColor=this.sheenColor.getHex()),this.sheenRoughness!==void 0&&(n.sheenRoughness=this.sheenRoughness),this.emissive&&this.emissive.isColor&&(n.emissive=this.emissive.getHex()),this.emissiveIntensity!==void 0&&this.emissiveIntensity!==1&&(n.emissiveIntensity=this.emissiveIntensity),this.specular&&this.specular.isColor&&(n.specular=this.specular.getHex()),this.specularIntensity!==void 0&&(n.specularIntensity=this.specularIntensity),this.specularColor&&this.specularColor.isColor&&(n.specularColor=this.specularColor.getHex()),this.shininess!==void 0&&(n.shininess=this.shininess),this.clearcoat!==void 0&&(n.clearcoat=this.clearcoat),this.clearcoatRoughness!==void 0&&(n.clearcoatRoughness=this.clearcoatRoughness),this.clearcoatMap&&this.clearcoatMap.isTexture&&(n.clearcoatMap=this.clearcoatMap.toJSON(t).uuid),this.clearcoatRoughnessMap&&this.clearcoatRoughnessMap.isTexture&&(n.clearcoatRoughnessMap=this.clearcoatRoughnessMap.toJSON(t).uuid),this.clearcoatNormalMap&&this.clearcoatNormalMap.isTexture&&(n.clearcoatNormalMap=this.clearcoatNormalMap.toJSON(t).uuid,n.clearcoatNormalScale=this.clearcoatNormalScale.toArray()),this.dispersion!==void 0&&(n.dispersion=this.dispersion),this.iridescence!==void 0&&(n.iridescence=this.iridescence),this.iridescenceIOR!==void 0&&(n.iridescenceIOR=this.iridescenceIOR),this.iridescenceThicknessRange!==void 0&&(n.iridescenceThicknessRange=this.iridescenceThicknessRange),this.iridescenceMap&&this.iridescenceMap.isTexture&&(n.iridescenceMap=this.iridescenceMap.toJSON(t).uuid),this.iridescenceThicknessMap&&this.iridescenceThicknessMap.isTexture&&(n.iridescenceThicknessMap=this.iridescenceThicknessMap.toJSON(t).uuid),this.anisotropy!==void 0&&(n.anisotropy=this.anisotropy),this.anisotropyRotation!==void 0&&(n.anisotropyRotation=this.anisotropyRotation),this.anisotropyMap&&this.anisotropyMap.isTexture&&(n.anisotropyMap=this.anisotropyMap.toJSON(t).uuid),this.map&&this.map.isTexture&&(n.map=this.map.toJSON(t).uuid),this.matcap&&this.matcap.isTexture&&(n.matcap=this.matcap.toJSON(t).uuid),this.alphaMap&&this.alphaMap.isTexture&&(n.alphaMap=this.alphaMap.toJSON(t).uuid),this.lightMap&&this.lightMap.isTexture&&(n.lightMap=this.lightMap.toJSON(t).uuid,n.lightMapIntensity=this.lightMapIntensity),this.aoMap&&this.aoMap.isTexture&&(n.aoMap=this.aoMap.toJSON(t).uuid,n.aoMapIntensity=this.aoMapIntensity),this.bumpMap&&this.bumpMap.isTexture&&(n.bumpMap=this.bumpMap.toJSON(t).uuid,n.bumpScale=this.bumpScale),this.normalMap&&this.normalMap.isTexture&&(n.normalMap=this.normalMap.toJSON(t).uuid,n.normalMapType=this.normalMapType,n.normalScale=this.normalScale.toArray()),this.displacementMap&&this.displacementMap.isTexture&&(n.displacementMap=this.displacementMap.toJSON(t).uuid,n.displacementScale=this.displacementScale,n.displacementBias=this.displacementBias),this.roughnessMap&&this.roughnessMap.isTexture&&(n.roughnessMap=this.roughnessMap.toJSON(t).uuid),this.metalnessMap&&this.metalnessMap.isTexture&&(n.metalnessMap=this.metalnessMap.toJSON(t).uuid),this.emissiveMap&&this.emissiveMap.isTexture&&(n.emissiveMap=this.emissiveMap.toJSON(t).uuid),this.specularMap&&this.specularMap.isTexture&&(n.specularMap=this.specularMap.toJSON(t).uuid),this.specularIntensityMap&&this.specularIntensityMap.isTexture&&(n.specularIntensityMap=this.specularIntensityMap.toJSON(t).uuid),this.specularColorMap&&this.specularColorMap.isTexture&&(n.specularColorMap=this.specularColorMap.toJSON(t).uuid),this.envMap&&this.envMap.isTexture&&(n.envMap=this.envMap.toJSON(t).uuid,this.combine!==void 0&&(n.combine=this.combine)),this.envMapRotation!==void 0&&(n.envMapRotation=this.envMapRotation.toArray()),this.envMapIntensity!==void 0&&(n.envMapIntensity=this.envMapIntensity),this.reflectivity!==void 0&&(n.reflectivity=this.reflectivity),this.refractionRatio!==void 0&&(n.refractionRatio=this.refractionRatio),this.gradientMap&&this.gradientMap.isTexture&&(n.gradientMap=this.gradientMap.toJSON(t).uuid),this.transmission!==void 0&&(n.transmission=this.transmission),this.transmissionMap&&this.transmissionMap.isTexture&&(n.transmissionMap=this.transmissionMap.toJSON(t).uuid),this.thickness!==void 0&&(n.thickness=this.thickness),this.thicknessMap&&this.thicknessMap.isTexture&&(n.thicknessMap=this.thicknessMap.toJSON(t).uuid),this.attenuationDistance!==void 0&&this.attenuationDistance!==1/0&&(n.attenuationDistance=this.attenuationDistance),this.attenuationColor!==void 0&&(n.attenuationColor=this.attenuationColor.getHex()),this.size!==void 0&&(n.size=this.size),this.shadowSide!==null&&(n.shadowSide=this.shadowSide),this.sizeAttenuation!==void 0&&(n.sizeAttenuation=this.sizeAttenuation),this.blending!==Qr&&(n.blending=this.blending),this.side!==Ds&&(n.side=this.side),this.vertexColors===!0&&(n.vertexColors=!0),this.opacity<1&&(n.opacity=this.opacity),this.transparent===!0&&(n.transparent=!0),this.blendSrc!==su&&(n.blendSrc=this.blendSrc),this.blendDst!==ru&&(n.blendDst=this.blendDst),this.blendEquation!==nr&&(n.blendEquation=this.blendEquation),this.blendSrcAlpha!==null&&(n.blendSrcAlpha=this.blendSrcAlpha),this.blendDstAlpha!==null&&(n.blendDstAlpha=this.blendDstAlpha),this.blendEquationAlpha!==null&&(n.blendEquationAlpha=this.blendEquationAlpha),this.blendColor&&this.blendColor.isColor&&(n.blendColor=this.blendColor.getHex()),this.blendAlpha!==0&&(n.blendAlpha=this.blendAlpha),this.depthFunc!==so&&(n.depthFunc=this.depthFunc),this.depthTest===!1&&(n.depthTest=this.depthTest),this.depthWrite===!1&&(n.depthWrite=this.depthWrite),this.colorWrite===!1&&(n.colorWrite=this.colorWrite),this.stencilWriteMask!==255&&(n.stencilWriteMask=this.stencilWriteMask),this.stencilFunc!==Mm&&(n.stencilFunc=this.stencilFunc),this.stencilRef!==0&&(n.stencilRef=this.stencilRef),this.stencilFuncMask!==255&&(n.stencilFuncMask=this.stencilFuncMask),this.stencilFail!==Or&&(n.stencilFail=this.stencilFail),this.stencilZFail!==Or&&(n.stencilZFail=this.stencilZFail),this.stencilZPass!==Or&&(n.stencilZPass=this.stencilZPass),this.stencilWrite===!0&&(n.stencilWrite=this.stencilWrite),this.rotation!==void 0&&this.rotation!==0&&(n.rotation=this.rotation),this.polygonOffset===!0&&(n.polygonOffset=!0),this.polygonOffsetFactor!==0&&(n.polygonOffsetFactor=this.polygonOffsetFactor),this.polygonOffsetUnits!==0&&(n.polygonOffsetUnits=this.polygonOffsetUnits),this.linewidth!==void 0&&this.linewidth!==1&&(n.linewidth=this.linewidth),this.dashSize!==void 0&&(n.dashSize=this.dashSize),this.gapSize!==void 0&&(n.gapSize=this.gapSize),this.scale!==void 0&&(n.scale=this.scale),this.dithering===!0&&(n.dithering=!0),this.alphaTest>0&&(n.alphaTest=this.alphaTest),this.alphaHash===!0&&(n.alphaHash=!0),this.alphaToCoverage===!0&&(n.alphaToCoverage=!0),this.premultipliedAlpha===!0&&(n.premultipliedAlpha=!0),this.forceSinglePass===!0&&(n.forceSinglePass=!0),this.wireframe===!0&&(n.wireframe=!0),this.wireframeLinewidth>1&&(n.wireframeLinewidth=this.wireframeLinewidth),this.wireframeLinecap!=="round"&&(n.wireframeLinecap=this.wireframeLinecap),this.wireframeLinejoin!=="round"&&(n.wireframeLinejoin=this.wireframeLinejoin),this.flatShading===!0&&(n.flatShading=!0),this.visible===!1&&(n.visible=!1),this.toneMapped===!1&&(n.toneMapped=!1),this.fog===!1&&(n.fog=!1),Object.keys(this.userData).length>0&&(n.userData=this.userData);function s(r){let o=[];for(let a in r){let l=r[a];delete l.metadata,o.push(l)}return o}if(e){let r=s(t.textures),o=s(t.images);r.length>0&&(n.textures=r),o.length>0&&(n.images=o)}return n}clone(){return new this.constructor().copy(this)}copy(t){this.name=t.name,this.blending=t.blending,this.side=t.side,this.vertexColors=t.vertexColors,this.opacity=t.opacity,this.transparent=t.transparent,this.blendSrc=t.blendSrc,this.blendDst=t.blendDst,this.blendEquation=t.blendEquation,this.blendSrcAlpha=t.blendSrcAlpha,this.blendDstAlpha=t.blendDstAlpha,this.blendEquationAlpha=t.blendEquationAlpha,this.blendColor.copy(t.blendColor),this.blendAlpha=t.blendAlpha,this.depthFunc=t.depthFunc,this.depthTest=t.depthTest,this.depthWrite=t.depthWrite,this.stencilWriteMask=t.stencilWriteMask,this.stencilFunc=t.stencilFunc,this.stencilRef=t.stencilRef,this.stencilFuncMask=t.stencilFuncMask,this.stencilFail=t.stencilFail,this.stencilZFail=t.stencilZFail,this.stencilZPass=t.stencilZPass,this.stencilWrite=t.stencilWrite;let e=t.clippingPlanes,n=null;if(e!==null){let s=e.length;n=new Array(s);for(let r=0;r!==s;++r)n[r]=e[r].clone()}return this.clippingPlanes=n,this.clipIntersection=t.clipIntersection,this.clipShadows=t.clipShadows,this.shadowSide=t.shadowSide,this.colorWrite=t.colorWrite,this.precision=t.precision,this.polygonOffset=t.polygonOffset,this.polygonOffsetFactor=t.polygonOffsetFactor,this.polygonOffsetUnits=t.polygonOffsetUnits,this.dithering=t.dithering,this.alphaTest=t.alphaTest,this.alphaHash=t.alphaHash,this.alphaToCoverage=t.alphaToCoverage,this.premultipliedAlpha=t.premultipliedAlpha,this.forceSinglePass=t.forceSinglePass,this.visible=t.visible,this.toneMapped=t.toneMapped,this.userData=JSON.parse(JSON.stringify(t.userData)),this}dispose(){this.dispatchEvent({type:"dispose"})}set needsUpdate(t){t===!0&&this.version++}onBuild(){console.warn("Material: onBuild() has been removed.")}},ds=class extends Us{static get type(){return"MeshBasicMaterial"}constructor(t){super(),this.isMeshBasicMaterial=!0,this.color=new oe(16777215),this.map=null,this.lightMap=null,this.lightMapIntensity=1,this.aoMap=null,this.aoMapIntensity=1,this.specularMap=null,this.alphaMap=null,this.envMap=null,this.envMapRotation=new ki,this.combine=Id,this.reflectivity=1,this.refractionRatio=.98,this.wireframe=!1,this.wireframeLinewidth=1,this.wireframeLinecap="round",this.wireframeLinejoin="round",this.fog=!0,this.setValues(t)}copy(t){return super.copy(t),this.color.copy(t.color),this.map=t.map,this.lightMap=t.lightMap,this.lightMapIntensity=t.lightMapIntensity,this.aoMap=t.aoMap,this.aoMapIntensity=t.aoMapIntensity,this.specularMap=t.specularMap,this.alphaMap=t.alphaMap,this.envMap=t.envMap,this.envMapRotation.copy(t.envMapRotation),this.combine=t.combine,this.reflectivity=t.reflectivity,this.refractionRatio=t.refractionRatio,this.wireframe=t.wireframe,this.wireframeLinewidth=t.wireframeLinewidth,this.wireframeLinecap=t.wireframeLinecap,this.wireframeLinejoin=t.wireframeLinejoin,this.fog=t.fog,this}};var en=new D,Ya=new gt,Kn=class{constructor(t,e,n=!1){if(Array.isArray(t))throw new TypeError("THREE.BufferAttribute: array should be a Typed Array.");this.isBufferAttribute=!0,this.name="",this.array=t,this.itemSize=e,this.count=t!==void 0?t.length/e:0,this.normalized=n,this.usage=Wu,this.updateRanges=[],this.gpuType=os,this.version=0}onUploadCallback(){}set needsUpdate(t){t===!0&&this.version++}setUsage(t){return this.usage=t,this}addUpdateRange(t,e){this.updateRanges.push({start:t,count:e})}clearUpdateRanges(){this.updateRanges.length=0}copy(t){return this.name=t.name,this.array=new t.array.constructor(t.array),this.itemSize=t.itemSize,this.count=t.count,this.normalized=t.normalized,this.usage=t.usage,this.gpuType=t.gpuType,this}copyAt(t,e,n){t*=this.itemSize,n*=e.itemSize;for(let s=0,r=this.itemSize;s<r;s++)this.array[t+s]=e.array[n+s];return this}copyArray(t){return this.array.set(t),this}applyMatrix3(t){if(this.itemSize===2)for(let e=0,n=this.count;e<n;e++)Ya.fromBufferAttribute(this,e),Ya.applyMatrix3(t),this.setXY(e,Ya.x,Ya.y);else if(this.itemSize===3)for(let e=0,n=this.count;e<n;e++)en.fromBufferAttribute(this,e),en.applyMatrix3(t),this.setXYZ(e,en.x,en.y,en.z);return this}applyMatrix4(t){for(let e=0,n=this.count;e<n;e++)en.fromBufferAttribute(this,e),en.applyMatrix4(t),this.setXYZ(e,en.x,en.y,en.z);return this}applyNormalMatrix(t){for(let e=0,n=this.count;e<n;e++)en.fromBufferAttribute(this,e),en.applyNormalMatrix(t),this.setXYZ(e,en.x,en.y,en.z);return this}transformDirection(t){for(let e=0,n=this.count;e<n;e++)en.fromBufferAttribute(this,e),en.transformDirection(t),this.setXYZ(e,en.x,en.y,en.z);return this}set(t,e=0){return this.array.set(t,e),this}getComponent(t,e){let n=this.array[t*this.itemSize+e];return this.normalized&&(n=Si(n,this.array)),n}setComponent(t,e,n){return this.normalized&&(n=Re(n,this.array)),this.array[t*this.itemSize+e]=n,this}getX(t){let e=this.array[t*this.itemSize];return this.normalized&&(e=Si(e,this.array)),e}setX(t,e){return this.normalized&&(e=Re(e,this.array)),this.array[t*this.itemSize]=e,this}getY(t){let e=this.array[t*this.itemSize+1];return this.normalized&&(e=Si(e,this.array)),e}setY(t,e){return this.normalized&&(e=Re(e,this.array)),this.array[t*this.itemSize+1]=e,this}getZ(t){let e=this.array[t*this.itemSize+2];return this.normalized&&(e=Si(e,this.array)),e}setZ(t,e){return this.normalized&&(e=Re(e,this.array)),this.array[t*this.itemSize+2]=e,this}getW(t){let e=this.array[t*this.itemSize+3];return this.normalized&&(e=Si(e,this.array)),e}setW(t,e){return this.normalized&&(e=Re(e,this.array)),this.array[t*this.itemSize+3]=e,this}setXY(t,e,n){return t*=this.itemSize,this.normalized&&(e=Re(e,this.array),n=Re(n,this.array)),this.array[t+0]=e,this.array[t+1]=n,this}setXYZ(t,e,n,s){return t*=this.itemSize,this.normalized&&(e=Re(e,this.array),n=Re(n,this.array),s=Re(s,this.array)),this.array[t+0]=e,this.array[t+1]=n,this.array[t+2]=s,this}setXYZW(t,e,n,s,r){return t*=this.itemSize,this.normalized&&(e=Re(e,this.array),n=Re(n,this.array),s=Re(s,this.array),r=Re(r,this.array)),this.array[t+0]=e,this.array[t+1]=n,this.array[t+2]=s,this.array[t+3]=r,this}onUpload(t){return this.onUploadCallback=t,this}clone(){return new this.constructor(this.array,this.itemSize).copy(this)}toJSON(){let t={itemSize:this.itemSize,type:this.array.constructor.name,array:Array.from(this.array),normalized:this.normalized};return this.name!==""&&(t.name=this.name),this.usage!==Wu&&(t.usage=this.usage),t}};var Tl=class extends Kn{constructor(t,e,n){super(new Uint16Array(t),e,n)}};var Al=class extends Kn{constructor(t,e,n){super(new Uint32Array(t),e,n)}};var ee=class extends Kn{constructor(t,e,n){super(new Float32Array(t),e,n)}},Nv=0,oi=new Ge,Gh=new Tn,Yr=new D,Zn=new ci,Vo=new ci,gn=new D,we=class i extends hs{constructor(){super(),this.isBufferGeometry=!0,Object.defineProperty(this,"id",{value:Nv++}),this.uuid=Bi(),this.name="",this.type="BufferGeometry",this.index=null,this.indirect=null,this.attributes={},this.morphAttributes={},this.morphTargetsRelative=!1,this.groups=[],this.boundingBox=null,this.boundingSphere=null,this.drawRange={start:0,count:1/0},this.userData={}}getIndex(){return this.index}setIndex(t){return Array.isArray(t)?this.index=new(Hg(t)?Al:Tl)(t,1):this.index=t,this}setIndirect(t){return this.indirect=t,this}getIndirect(){return this.indirect}getAttribute(t){return this.attributes[t]}setAttribute(t,e){return this.attributes[t]=e,this}deleteAttribute(t){return delete this.attributes[t],this}hasAttribute(t){return this.attributes[t]!==void 0}addGroup(t,e,n=0){this.groups.push({start:t,count:e,materialIndex:n})}clearGroups(){this.groups=[]}setDrawRange(t,e){this.drawRange.start=t,this.drawRange.count=e}applyMatrix4(t){let e=this.attributes.position;e!==void 0&&(e.applyMatrix4(t),e.needsUpdate=!0);let n=this.attributes.normal;if(n!==void 0){let r=new le().getNormalMatrix(t);n.applyNormalMatrix(r),n.needsUpdate=!0}let s=this.attributes.tangent;return s!==void 0&&(s.transformDirection(t),s.needsUpdate=!0),this.boundingBox!==null&&this.computeBoundingBox(),this.boundingSphere!==null&&this.computeBoundingSphere(),this}applyQuaternion(t){return oi.makeRotationFromQuaternion(t),this.applyMatrix4(oi),this}rotateX(t){return oi.makeRotationX(t),this.applyMatrix4(oi),this}rotateY(t){return oi.makeRotationY(t),this.applyMatrix4(oi),this}rotateZ(t){return oi.makeRotationZ(t),this.applyMatrix4(oi),this}translate(t,e,n){return oi.makeTranslation(t,e,n),this.applyMatrix4(oi),this}scale(t,e,n){return oi.makeScale(t,e,n),this.applyMatrix4(oi),this}lookAt(t){return Gh.lookAt(t),Gh.updateMatrix(),this.applyMatrix4(Gh.matrix),this}center(){return this.computeBoundingBox(),this.boundingBox.getCenter(Yr).negate(),this.translate(Yr.x,Yr.y,Yr.z),this}setFromPoints(t){let e=this.getAttribute("position");if(e===void 0){let n=[];for(let s=0,r=t.length;s<r;s++){let o=t[s];n.push(o.x,o.y,o.z||0)}this.setAttribute("position",new ee(n,3))}else{for(let n=0,s=e.count;n<s;n++){let r=t[n];e.setXYZ(n,r.x,r.y,r.z||0)}t.length>e.count&&console.warn("THREE.BufferGeometry: Buffer size too small for points data. Use .dispose() and create a new geometry."),e.needsUpdate=!0}return this}computeBoundingBox(){this.boundingBox===null&&(this.boundingBox=new ci);let t=this.attributes.position,e=this.morphAttributes.position;if(t&&t.isGLBufferAttribute){console.error("THREE.BufferGeometry.computeBoundingBox(): GLBufferAttribute requires a manual bounding box.",this),this.boundingBox.set(new D(-1/0,-1/0,-1/0),new D(1/0,1/0,1/0));return}if(t!==void 0){if(this.boundingBox.setFromBufferAttribute(t),e)for(let n=0,s=e.length;n<s;n++){let r=e[n];Zn.setFromBufferAttribute(r),this.morphTargetsRelative?(gn.addVectors(this.boundingBox.min,Zn.min),this.boundingBox.expandByPoint(gn),gn.addVectors(this.boundingBox.max,Zn.max),this.boundingBox.expandByPoint(gn)):(this.boundingBox.expandByPoint(Zn.min),this.boundingBox.expandByPoint(Zn.max))}}else this.boundingBox.makeEmpty();(isNaN(this.boundingBox.min.x)||isNaN(this.boundingBox.min.y)||isNaN(this.boundingBox.min.z))&&console.error('THREE.BufferGeometry.computeBoundingBox(): Computed min/max have NaN values. The "position" attribute is likely to have NaN values.',this)}computeBoundingSphere(){this.boundingSphere===null&&(this.boundingSphere=new zi);let t=this.attributes.position,e=this.morphAttributes.position;if(t&&t.isGLBufferAttribute){console.error("THREE.BufferGeometry.computeBoundingSphere(): GLBufferAttribute requires a manual bounding sphere.",this),this.boundingSphere.set(new D,1/0);return}if(t){let n=this.boundingSphere.center;if(Zn.setFromBufferAttribute(t),e)for(let r=0,o=e.length;r<o;r++){let a=e[r];Vo.setFromBufferAttribute(a),this.morphTargetsRelative?(gn.addVectors(Zn.min,Vo.min),Zn.expandByPoint(gn),gn.addVectors(Zn.max,Vo.max),Zn.expandByPoint(gn)):(Zn.expandByPoint(Vo.min),Zn.expandByPoint(Vo.max))}Zn.getCenter(n);let s=0;for(let r=0,o=t.count;r<o;r++)gn.fromBufferAttribute(t,r),s=Math.max(s,n.distanceToSquared(gn));if(e)for(let r=0,o=e.length;r<o;r++){let a=e[r],l=this.morphTargetsRelative;for(let c=0,u=a.count;c<u;c++)gn.fromBufferAttribute(a,c),l&&(Yr.fromBufferAttribute(t,c),gn.add(Yr)),s=Math.max(s,n.distanceToSquared(gn))}this.boundingSphere.radius=Math.sqrt(s),isNaN(this.boundingSphere.radius)&&console.error('THREE.BufferGeometry.computeBoundingSphere(): Computed radius is NaN. The "position" attribute is likely to have NaN values.',this)}}computeTangents(){let t=this.index,e=this.attributes;if(t===null||e.position===void 0||e.normal===void 0||e.uv===void 0){console.error("THREE.BufferGeometry: .computeTangents() failed. Missing required attributes (index, position, normal or uv)");return}let n=e.position,s=e.normal,r=e.uv;this.hasAttribute("tangent")===!1&&this.setAttribute("tangent",new Kn(new Float32Array(4*n.count),4));let o=this.getAttribute("tangent"),a=[],l=[];for(let F=0;F<n.count;F++)a[F]=new D,l[F]=new D;let c=new D,u=new D,d=new D,h=new gt,f=new gt,g=new gt,_=new D,m=new D;function p(F,E,M){c.fromBufferAttribute(n,F),u.fromBufferAttribute(n,E),d.fromBufferAttribute(n,M),h.fromBufferAttribute(r,F),f.fromBufferAttribute(r,E),g.fromBufferAttribute(r,M),u.sub(c),d.sub(c),f.sub(h),g.sub(h);let A=1/(f.x*g.y-g.x*f.y);isFinite(A)&&(_.copy(u).multiplyScalar(g.y).addScaledVector(d,-f.y).multiplyScalar(A),m.copy(d).multiplyScalar(f.x).addScaledVector(u,-g.x).multiplyScalar(A),a[F].add(_),a[E].add(_),a[M].add(_),l[F].add(m),l[E].add(m),l[M].add(m))}let b=this.groups;b.length===0&&(b=[{start:0,count:t.count}]);for(let F=0,E=b.length;F<E;++F){let M=b[F],A=M.start,W=M.count;for(let G=A,X=A+W;G<X;G+=3)p(t.getX(G+0),t.getX(G+1),t.getX(G+2))}let y=new D,v=new D,N=new D,P=new D;function R(F){N.fromBufferAttribute(s,F),P.copy(N);let E=a[F];y.copy(E),y.sub(N.multiplyScalar(N.dot(E))).normalize(),v.crossVectors(P,E);let A=v.dot(l[F])<0?-1:1;o.setXYZW(F,y.x,y.y,y.z,A)}for(let F=0,E=b.length;F<E;++F){let M=b[F],A=M.start,W=M.count;for(let G=A,X=A+W;G<X;G+=3)R(t.getX(G+0)),R(t.getX(G+1)),R(t.getX(G+2))}}computeVertexNormals(){let t=this.index,e=this.getAttribute("position");if(e!==void 0){let n=this.getAttribute("normal");if(n===void 0)n=new Kn(new Float32Array(e.count*3),3),this.setAttribute("normal",n);else for(let h=0,f=n.count;h<f;h++)n.setXYZ(h,0,0,0);let s=new D,r=new D,o=new D,a=new D,l=new D,c=new D,u=new D,d=new D;if(t)for(let h=0,f=t.count;h<f;h+=3){let g=t.getX(h+0),_=t.getX(h+1),m=t.getX(h+2);s.fromBufferAttribute(e,g),r.fromBufferAttribute(e,_),o.fromBufferAttribute(e,m),u.subVectors(o,r),d.subVectors(s,r),u.cross(d),a.fromBufferAttribute(n,g),l.fromBufferAttribute(n,_),c.fromBufferAttribute(n,m),a.add(u),l.add(u),c.add(u),n.setXYZ(g,a.x,a.y,a.z),n.setXYZ(_,l.x,l.y,l.z),n.setXYZ(m,c.x,c.y,c.z)}else for(let h=0,f=e.count;h<f;h+=3)s.fromBufferAttribute(e,h+0),r.fromBufferAttribute(e,h+1),o.fromBufferAttribute(e,h+2),u.subVectors(o,r),d.subVectors(s,r),u.cross(d),n.setXYZ(h+0,u.x,u.y,u.z),n.setXYZ(h+1,u.x,u.y,u.z),n.setXYZ(h+2,u.x,u.y,u.z);this.normalizeNormals(),n.needsUpdate=!0}}normalizeNormals(){let t=this.attributes.normal;for(let e=0,n=t.count;e<n;e++)gn.fromBufferAttribute(t,e),gn.normalize(),t.setXYZ(e,gn.x,gn.y,gn.z)}toNonIndexed(){function t(a,l){let c=a.array,u=a.itemSize,d=a.normalized,h=new c.constructor(l.length*u),f=0,g=0;for(let _=0,m=l.length;_<m;_++){a.isInterleavedBufferAttribute?f=l[_]*a.data.stride+a.offset:f=l[_]*u;for(let p=0;p<u;p++)h[g++]=c[f++]}return new Kn(h,u,d)}if(this.index===null)return console.warn("THREE.BufferGeometry.toNonIndexed(): BufferGeometry is already non-indexed."),this;let e=new i,n=this.index.array,s=this.attributes;for(let a in s){let l=s[a],c=t(l,n);e.setAttribute(a,c)}let r=this.morphAttributes;for(let a in r){let l=[],c=r[a];for(let u=0,d=c.length;u<d;u++){let h=c[u],f=t(h,n);l.push(f)}e.morphAttributes[a]=l}e.morphTargetsRelative=this.morphTargetsRelative;let o=this.groups;for(let a=0,l=o.length;a<l;a++){let c=o[a];e.addGroup(c.start,c.count,c.materialIndex)}return e}toJSON(){let t={metadata:{version:4.6,type:"BufferGeometry",generator:"BufferGeometry.toJSON"}};if(t.uuid=this.uuid,t.type=this.type,this.name!==""&&(t.name=this.name),Object.keys(this.userData).length>0&&(t.userData=this.userData),this.parameters!==void 0){let l=this.parameters;for(let c in l)l[c]!==void 0&&(t[c]=l[c]);return t}t.data={attributes:{}};let e=this.index;e!==null&&(t.data.index={type:e.array.constructor.name,array:Array.prototype.slice.call(e.array)});let n=this.attributes;for(let l in n){let c=n[l];t.data.attributes[l]=c.toJSON(t.data)}let s={},r=!1;for(let l in this.morphAttributes){let c=this.morphAttributes[l],u=[];for(let d=0,h=c.length;d<h;d++){let f=c[d];u.push(f.toJSON(t.data))}u.length>0&&(s[l]=u,r=!0)}r&&(t.data.morphAttributes=s,t.data.morphTargetsRelative=this.morphTargetsRelative);let o=this.groups;o.length>0&&(t.data.groups=JSON.parse(JSON.stringify(o)));let a=this.boundingSphere;return a!==null&&(t.data.boundingSphere={center:a.center.toArray(),radius:a.radius}),t}clone(){return new this.constructor().copy(this)}copy(t){this.index=null,this.attributes={},this.morphAttributes={},this.groups=[],this.boundingBox=null,this.boundingSphere=null;let e={};this.name=t.name;let n=t.index;n!==null&&this.setIndex(n.clone(e));let s=t.attributes;for(let c in s){let u=s[c];this.setAttribute(c,u.clone(e))}let r=t.morphAttributes;for(let c in r){let u=[],d=r[c];for(let h=0,f=d.length;h<f;h++)u.push(d[h].clone(e));this.morphAttributes[c]=u}this.morphTargetsRelative=t.morphTargetsRelative;let o=t.groups;for(let c=0,u=o.length;c<u;c++){let d=o[c];this.addGroup(d.start,d.count,d.materialIndex)}let a=t.boundingBox;a!==null&&(this.boundingBox=a.clone());let l=t.boundingSphere;return l!==null&&(this.boundingSphere=l.clone()),this.drawRange.start=t.drawRange.start,this.drawRange.count=t.drawRange.count,this.userData=t.userData,this}dispose(){this.dispatchEvent({type:"dispose"})}},zm=new Ge,Ks=new co,$a=new zi,km=new D,Za=new D,Ja=new D,Ka=new D,Wh=new D,ja=new D,Vm=new D,Qa=new D,_e=class extends Tn{constructor(t=new we,e=new ds){super(),this.isMesh=!0,this.type="Mesh",this.geometry=t,this.material=e,this.updateMorphTargets()}copy(t,e){return super.copy(t,e),t.morphTargetInfluences!==void 0&&(this.morphTargetInfluences=t.morphTargetInfluences.slice()),t.morphTargetDictionary!==void 0&&(this.morphTargetDictionary=Object.assign({},t.morphTargetDictionary)),this.material=Array.isArray(t.material)?t.material.slice():t.material,this.geometry=t.geometry,this}updateMorphTargets(){let e=this.geometry.morphAttributes,n=Object.keys(e);if(n.length>0){let s=e[n[0]];if(s!==void 0){this.morphTargetInfluences=[],this.morphTargetDictionary={};for(let r=0,o=s.length;r<o;r++){let a=s[r].name||String(r);this.morphTargetInfluences.push(0),this.morphTargetDictionary[a]=r}}}}getVertexPosition(t,e){let n=this.geometry,s=n.attributes.position,r=n.morphAttributes.position,o=n.morphTargetsRelative;e.fromBufferAttribute(s,t);let a=this.morphTargetInfluences;if(r&&a){ja.set(0,0,0);for(let l=0,c=r.length;l<c;l++){let u=a[l],d=r[l];u!==0&&(Wh.fromBufferAttribute(d,t),o?ja.addScaledVector(Wh,u):ja.addScaledVector(Wh.sub(e),u))}e.add(ja)}return e}raycast(t,e){let n=this.geometry,s=this.material,r=this.matrixWorld;s!==void 0&&(n.boundingSphere===null&&n.computeBoundingSphere(),$a.copy(n.boundingSphere),$a.applyMatrix4(r),Ks.copy(t.ray).recast(t.near),!($a.containsPoint(Ks.origin)===!1&&(Ks.intersectSphere($a,km)===null||Ks.origin.distanceToSquared(km)>(t.far-t.near)**2))&&(zm.copy(r).invert(),Ks.copy(t.ray).applyMatrix4(zm),!(n.boundingBox!==null&&Ks.intersectsBox(n.boundingBox)===!1)&&this._computeIntersections(t,e,Ks)))}_computeIntersections(t,e,n){let s,r=this.geometry,o=this.material,a=r.index,l=r.attributes.position,c=r.attributes.uv,u=r.attributes.uv1,d=r.attributes.normal,h=r.groups,f=r.drawRange;if(a!==null)if(Array.isArray(o))for(let g=0,_=h.length;g<_;g++){let m=h[g],p=o[m.materialIndex],b=Math.max(m.start,f.start),y=Math.min(a.count,Math.min(m.start+m.count,f.start+f.count));for(let v=b,N=y;v<N;v+=3){let P=a.getX(v),R=a.getX(v+1),F=a.getX(v+2);s=tl(this,p,t,n,c,u,d,P,R,F),s&&(s.faceIndex=Math.floor(v/3),s.face.materialIndex=m.materialIndex,e.push(s))}}else{let g=Math.max(0,f.start),_=Math.min(a.count,f.start+f.count);for(let m=g,p=_;m<p;m+=3){let b=a.getX(m),y=a.getX(m+1),v=a.getX(m+2);s=tl(this,o,t,n,c,u,d,b,y,v),s&&(s.faceIndex=Math.floor(m/3),e.push(s))}}else if(l!==void 0)if(Array.isArray(o))for(let g=0,_=h.length;g<_;g++){let m=h[g],p=o[m.materialIndex],b=Math.max(m.start,f.start),y=Math.min(l.count,Math.min(m.start+m.count,f.start+f.count));for(let v=b,N=y;v<N;v+=3){let P=v,R=v+1,F=v+2;s=tl(this,p,t,n,c,u,d,P,R,F),s&&(s.faceIndex=Math.floor(v/3),s.face.materialIndex=m.materialIndex,e.push(s))}}else{let g=Math.max(0,f.start),_=Math.min(l.count,f.start+f.count);for(let m=g,p=_;m<p;m+=3){let b=m,y=m+1,v=m+2;s=tl(this,o,t,n,c,u,d,b,y,v),s&&(s.faceIndex=Math.floor(m/3),e.push(s))}}}};function Fv(i,t,e,n,s,r,o,a){let l;if(t.side===zn?l=n.intersectTriangle(o,r,s,!0,a):l=n.intersectTriangle(s,r,o,t.side===Ds,a),l===null)return null;Qa.copy(a),Qa.applyMatrix4(i.matrixWorld);let c=e.ray.origin.distanceTo(Qa);return c<e.near||c>e.far?null:{distance:c,point:Qa.clone(),object:i}}function tl(i,t,e,n,s,r,o,a,l,c){i.getVertexPosition(a,Za),i.getVertexPosition(l,Ja),i.getVertexPosition(c,Ka);let u=Fv(i,t,e,n,Za,Ja,Ka,Vm);if(u){let d=new D;Fi.getBarycoord(Vm,Za,Ja,Ka,d),s&&(u.uv=Fi.getInterpolatedAttribute(s,a,l,c,d,new gt)),r&&(u.uv1=Fi.getInterpolatedAttribute(r,a,l,c,d,new gt)),o&&(u.normal=Fi.getInterpolatedAttribute(o,a,l,c,d,new D),u.normal.dot(n.direction)>0&&u.normal.multiplyScalar(-1));let h={a,b:l,c,normal:new D,materialIndex:0};Fi.getNormal(Za,Ja,Ka,h.normal),u.face=h,u.barycoord=d}return u}var Vi=class i extends we{constructor(t=1,e=1,n=1,s=1,r=1,o=1){super(),this.type="BoxGeometry",this.parameters={width:t,height:e,depth:n,widthSegments:s,heightSegments:r,depthSegments:o};let a=this;s=Math.floor(s),r=Math.floor(r),o=Math.floor(o);let l=[],c=[],u=[],d=[],h=0,f=0;g("z","y","x",-1,-1,n,e,t,o,r,0),g("z","y","x",1,-1,n,e,-t,o,r,1),g("x","z","y",1,1,t,n,e,s,o,2),g("x","z","y",1,-1,t,n,-e,s,o,3),g("x","y","z",1,-1,t,e,n,s,r,4),g("x","y","z",-1,-1,t,e,-n,s,r,5),this.setIndex(l),this.setAttribute("position",new ee(c,3)),this.setAttribute("normal",new ee(u,3)),this.setAttribute("uv",new ee(d,2));function g(_,m,p,b,y,v,N,P,R,F,E){let M=v/R,A=N/F,W=v/2,G=N/2,X=P/2,Z=R+1,Y=F+1,nt=0,Q=0,ft=new D;for(let at=0;at<Y;at++){let _t=at*A-G;for(let pt=0;pt<Z;pt++){let Zt=pt*M-W;ft[_]=Zt*b,ft[m]=_t*y,ft[p]=X,c.push(ft.x,ft.y,ft.z),ft[_]=0,ft[m]=0,ft[p]=P>0?1:-1,u.push(ft.x,ft.y,ft.z),d.push(pt/R),d.push(1-at/F),nt+=1}}for(let at=0;at<F;at++)for(let _t=0;_t<R;_t++){let pt=h+_t+Z*at,Zt=h+_t+Z*(at+1),J=h+(_t+1)+Z*(at+1),ht=h+(_t+1)+Z*at;l.push(pt,Zt,ht),l.push(Zt,J,ht),Q+=6}a.addGroup(f,Q,E),f+=Q,h+=nt}}copy(t){return super.copy(t),this.parameters=Object.assign({},t.parameters),this}static fromJSON(t){return new i(t.width,t.height,t.depth,t.widthSegments,t.heightSegments,t.depthSegments)}};function ho(i){let t={};for(let e in i){t[e]={};for(let n in i[e]){let s=i[e][n];s&&(s.isColor||s.isMatrix3||s.isMatrix4||s.isVector2||s.isVector3||s.isVector4||s.isTexture||s.isQuaternion)?s.isRenderTargetTexture?(console.warn("UniformsUtils: Textures of render targets cannot be cloned via cloneUniforms() or mergeUniforms()."),t[e][n]=null):t[e][n]=s.clone():Array.isArray(s)?t[e][n]=s.slice():t[e][n]=s}}return t}function Dn(i){let t={};for(let e=0;e<i.length;e++){let n=ho(i[e]);for(let s in n)t[s]=n[s]}return t}function Ov(i){let t=[];for(let e=0;e<i.length;e++)t.push(i[e].clone());return t}function Wg(i){let t=i.getRenderTarget();return t===null?i.outputColorSpace:t.isXRRenderTarget===!0?t.texture.colorSpace:ve.workingColorSpace}var rc={clone:ho,merge:Dn},Bv=`void main() {
+	gl_Position = projectionMatrix * modelViewMatrix * vec4( position, 1.0 );
+}`,zv=`void main() {
+	gl_FragColor = vec4( 1.0, 0.0, 0.0, 1.0 );
+}`,hi=class extends Us{static get type(){return"ShaderMaterial"}constructor(t){super(),this.isShaderMaterial=!0,this.defines={},this.uniforms={},this.uniformsGroups=[],this.vertexShader=Bv,this.fragmentShader=zv,this.linewidth=1,this.wireframe=!1,this.wireframeLinewidth=1,this.fog=!1,this.lights=!1,this.clipping=!1,this.forceSinglePass=!0,this.extensions={clipCullDistance:!1,multiDraw:!1},this.defaultAttributeValues={color:[1,1,1],uv:[0,0],uv1:[0,0]},this.index0AttributeName=void 0,this.uniformsNeedUpdate=!1,this.glslVersion=null,t!==void 0&&this.setValues(t)}copy(t){return super.copy(t),this.fragmentShader=t.fragmentShader,this.vertexShader=t.vertexShader,this.uniforms=ho(t.uniforms),this.uniformsGroups=Ov(t.uniformsGroups),this.defines=Object.assign({},t.defines),this.wireframe=t.wireframe,this.wireframeLinewidth=t.wireframeLinewidth,this.fog=t.fog,this.lights=t.lights,this.clipping=t.clipping,this.extensions=Object.assign({},t.extensions),this.glslVersion=t.glslVersion,this}toJSON(t){let e=super.toJSON(t);e.glslVersion=this.glslVersion,e.uniforms={};for(let s in this.uniforms){let o=this.uniforms[s].value;o&&o.isTexture?e.uniforms[s]={type:"t",value:o.toJSON(t).uuid}:o&&o.isColor?e.uniforms[s]={type:"c",value:o.getHex()}:o&&o.isVector2?e.uniforms[s]={type:"v2",value:o.toArray()}:o&&o.isVector3?e.uniforms[s]={type:"v3",value:o.toArray()}:o&&o.isVector4?e.uniforms[s]={type:"v4",value:o.toArray()}:o&&o.isMatrix3?e.uniforms[s]={type:"m3",value:o.toArray()}:o&&o.isMatrix4?e.uniforms[s]={type:"m4",value:o.toArray()}:e.uniforms[s]={value:o}}Object.keys(this.defines).length>0&&(e.defines=this.defines),e.vertexShader=this.vertexShader,e.fragmentShader=this.fragmentShader,e.lights=this.lights,e.clipping=this.clipping;let n={};for(let s in this.extensions)this.extensions[s]===!0&&(n[s]=!0);return Object.keys(n).length>0&&(e.extensions=n),e}},Cl=class extends Tn{constructor(){super(),this.isCamera=!0,this.type="Camera",this.matrixWorldInverse=new Ge,this.projectionMatrix=new Ge,this.projectionMatrixInverse=new Ge,this.coordinateSystem=as}copy(t,e){return super.copy(t,e),this.matrixWorldInverse.copy(t.matrixWorldInverse),this.projectionMatrix.copy(t.projectionMatrix),this.projectionMatrixInverse.copy(t.projectionMatrixInverse),this.coordinateSystem=t.coordinateSystem,this}getWorldDirection(t){return super.getWorldDirection(t).negate()}updateMatrixWorld(t){super.updateMatrixWorld(t),this.matrixWorldInverse.copy(this.matrixWorld).invert()}updateWorldMatrix(t,e){super.updateWorldMatrix(t,e),this.matrixWorldInverse.copy(this.matrixWorld).invert()}clone(){return new this.constructor().copy(this)}},Cs=new D,Hm=new gt,Gm=new gt,Un=class extends Cl{constructor(t=50,e=1,n=.1,s=2e3){super(),this.isPerspectiveCamera=!0,this.type="PerspectiveCamera",this.fov=t,this.zoom=1,this.near=n,this.far=s,this.focus=10,this.aspect=e,this.view=null,this.filmGauge=35,this.filmOffset=0,this.updateProjectionMatrix()}copy(t,e){return super.copy(t,e),this.fov=t.fov,this.zoom=t.zoom,this.near=t.near,this.far=t.far,this.focus=t.focus,this.aspect=t.aspect,this.view=t.view===null?null:Object.assign({},t.view),this.filmGauge=t.filmGauge,this.filmOffset=t.filmOffset,this}setFocalLength(t){let e=.5*this.getFilmHeight()/t;this.fov=Jo*2*Math.atan(e),this.updateProjectionMatrix()}getFocalLength(){let t=Math.tan(eo*.5*this.fov);return .5*this.getFilmHeight()/t}getEffectiveFOV(){return Jo*2*Math.atan(Math.tan(eo*.5*this.fov)/this.zoom)}getFilmWidth(){return this.filmGauge*Math.min(this.aspect,1)}getFilmHeight(){return this.filmGauge/Math.max(this.aspect,1)}getViewBounds(t,e,n){Cs.set(-1,-1,.5).applyMatrix4(this.projectionMatrixInverse),e.set(Cs.x,Cs.y).multiplyScalar(-t/Cs.z),Cs.set(1,1,.5).applyMatrix4(this.projectionMatrixInverse),n.set(Cs.x,Cs.y).multiplyScalar(-t/Cs.z)}getViewSize(t,e){return this.getViewBounds(t,Hm,Gm),e.subVectors(Gm,Hm)}setViewOffset(t,e,n,s,r,o){this.aspect=t/e,this.view===null&&(this.view={enabled:!0,fullWidth:1,fullHeight:1,offsetX:0,offsetY:0,width:1,height:1}),this.view.enabled=!0,this.view.fullWidth=t,this.view.fullHeight=e,this.view.offsetX=n,this.view.offsetY=s,this.view.width=r,this.view.height=o,this.updateProjectionMatrix()}clearViewOffset(){this.view!==null&&(this.view.enabled=!1),this.updateProjectionMatrix()}updateProjectionMatrix(){let t=this.near,e=t*Math.tan(eo*.5*this.fov)/this.zoom,n=2*e,s=this.aspect*n,r=-.5*s,o=this.view;if(this.view!==null&&this.view.enabled){let l=o.fullWidth,c=o.fullHeight;r+=o.offsetX*s/l,e-=o.offsetY*n/c,s*=o.width/l,n*=o.height/c}let a=this.filmOffset;a!==0&&(r+=t*a/this.getFilmWidth()),this.projectionMatrix.makePerspective(r,r+s,e,e-n,t,this.far,this.coordinateSystem),this.projectionMatrixInverse.copy(this.projectionMatrix).invert()}toJSON(t){let e=super.toJSON(t);return e.object.fov=this.fov,e.object.zoom=this.zoom,e.object.near=this.near,e.object.far=this.far,e.object.focus=this.focus,e.object.aspect=this.aspect,this.view!==null&&(e.object.view=Object.assign({},this.view)),e.object.filmGauge=this.filmGauge,e.object.filmOffset=this.filmOffset,e}},$r=-90,Zr=1,$u=class extends Tn{constructor(t,e,n){super(),this.type="CubeCamera",this.renderTarget=n,this.coordinateSystem=null,this.activeMipmapLevel=0;let s=new Un($r,Zr,t,e);s.layers=this.layers,this.add(s);let r=new Un($r,Zr,t,e);r.layers=this.layers,this.add(r);let o=new Un($r,Zr,t,e);o.layers=this.layers,this.add(o);let a=new Un($r,Zr,t,e);a.layers=this.layers,this.add(a);let l=new Un($r,Zr,t,e);l.layers=this.layers,this.add(l);let c=new Un($r,Zr,t,e);c.layers=this.layers,this.add(c)}updateCoordinateSystem(){let t=this.coordinateSystem,e=this.children.concat(),[n,s,r,o,a,l]=e;for(let c of e)this.remove(c);if(t===as)n.up.set(0,1,0),n.lookAt(1,0,0),s.up.set(0,1,0),s.lookAt(-1,0,0),r.up.set(0,0,-1),r.lookAt(0,1,0),o.up.set(0,0,1),o.lookAt(0,-1,0),a.up.set(0,1,0),a.lookAt(0,0,1),l.up.set(0,1,0),l.lookAt(0,0,-1);else if(t===Ml)n.up.set(0,-1,0),n.lookAt(-1,0,0),s.up.set(0,-1,0),s.lookAt(1,0,0),r.up.set(0,0,1),r.lookAt(0,1,0),o.up.set(0,0,-1),o.lookAt(0,-1,0),a.up.set(0,-1,0),a.lookAt(0,0,1),l.up.set(0,-1,0),l.lookAt(0,0,-1);else throw new Error("THREE.CubeCamera.updateCoordinateSystem(): Invalid coordinate system: "+t);for(let c of e)this.add(c),c.updateMatrixWorld()}update(t,e){this.parent===null&&this.updateMatrixWorld();let{renderTarget:n,activeMipmapLevel:s}=this;this.coordinateSystem!==t.coordinateSystem&&(this.coordinateSystem=t.coordinateSystem,this.updateCoordinateSystem());let[r,o,a,l,c,u]=this.children,d=t.getRenderTarget(),h=t.getActiveCubeFace(),f=t.getActiveMipmapLevel(),g=t.xr.enabled;t.xr.enabled=!1;let _=n.texture.generateMipmaps;n.texture.generateMipmaps=!1,t.setRenderTarget(n,0,s),t.render(e,r),t.setRenderTarget(n,1,s),t.render(e,o),t.setRenderTarget(n,2,s),t.render(e,a),t.setRenderTarget(n,3,s),t.render(e,l),t.setRenderTarget(n,4,s),t.render(e,c),n.texture.generateMipmaps=_,t.setRenderTarget(n,5,s),t.render(e,u),t.setRenderTarget(d,h,f),t.xr.enabled=g,n.texture.needsPMREMUpdate=!0}},Rl=class extends li{constructor(t,e,n,s,r,o,a,l,c,u){t=t!==void 0?t:[],e=e!==void 0?e:ro,super(t,e,n,s,r,o,a,l,c,u),this.isCubeTexture=!0,this.flipY=!1}get images(){return this.image}set images(t){this.image=t}},Zu=class extends us{constructor(t=1,e={}){super(t,t,e),this.isWebGLCubeRenderTarget=!0;let n={width:t,height:t,depth:1},s=[n,n,n,n,n,n];this.texture=new Rl(s,e.mapping,e.wrapS,e.wrapT,e.magFilter,e.minFilter,e.format,e.type,e.anisotropy,e.colorSpace),this.texture.isRenderTargetTexture=!0,this.texture.generateMipmaps=e.generateMipmaps!==void 0?e.generateMipmaps:!1,this.texture.minFilter=e.minFilter!==void 0?e.minFilter:Oi}fromEquirectangularTexture(t,e){this.texture.type=e.type,this.texture.colorSpace=e.colorSpace,this.texture.generateMipmaps=e.generateMipmaps,this.texture.minFilter=e.minFilter,this.texture.magFilter=e.magFilter;let n={uniforms:{tEquirect:{value:null}},vertexShader:`
+
+				varying vec3 vWorldDirection;
+
+				vec3 transformDirection( in vec3 dir, in mat4 matrix ) {
+
+					return normalize( ( matrix * vec4( dir, 0.0 ) ).xyz );
+
+				}
+
+				void main() {
+
+					vWorldDirection = transformDirection( position, modelMatrix );
+
+					#include <begin_vertex>
+					#include <project_vertex>
+
+				}
+			`,fragmentShader:`
+
+				uniform sampler2D tEquirect;
+
+				varying vec3 vWorldDirection;
+
+				#include <common>
+
+				void main() {
+
+					vec3 direction = normalize( vWorldDirection );
+
+					vec2 sampleUV = equirectUv( direction );
+
+					gl_FragColor = texture2D( tEquirect, sampleUV );
+
+				}
+			`},s=new Vi(5,5,5),r=new hi({name:"CubemapFromEquirect",uniforms:ho(n.uniforms),vertexShader:n.vertexShader,fragmentShader:n.fragmentShader,side:zn,blending:Ps});r.uniforms.tEquirect.value=e;let o=new _e(s,r),a=e.minFilter;return e.minFilter===rr&&(e.minFilter=Oi),new $u(1,10,this).update(t,o),e.minFilter=a,o.geometry.dispose(),o.material.dispose(),this}clear(t,e,n,s){let r=t.getRenderTarget();for(let o=0;o<6;o++)t.setRenderTarget(this,o),t.clear(e,n,s);t.setRenderTarget(r)}},Xh=new D,kv=new D,Vv=new le,Jn=class{constructor(t=new D(1,0,0),e=0){this.isPlane=!0,this.normal=t,this.constant=e}set(t,e){return this.normal.copy(t),this.constant=e,this}setComponents(t,e,n,s){return this.normal.set(t,e,n),this.constant=s,this}setFromNormalAndCoplanarPoint(t,e){return this.normal.copy(t),this.constant=-e.dot(this.normal),this}setFromCoplanarPoints(t,e,n){let s=Xh.subVectors(n,e).cross(kv.subVectors(t,e)).normalize();return this.setFromNormalAndCoplanarPoint(s,t),this}copy(t){return this.normal.copy(t.normal),this.constant=t.constant,this}normalize(){let t=1/this.normal.length();return this.normal.multiplyScalar(t),this.constant*=t,this}negate(){return this.constant*=-1,this.normal.negate(),this}distanceToPoint(t){return this.normal.dot(t)+this.constant}distanceToSphere(t){return this.distanceToPoint(t.center)-t.radius}projectPoint(t,e){return e.copy(t).addScaledVector(this.normal,-this.distanceToPoint(t))}intersectLine(t,e){let n=t.delta(Xh),s=this.normal.dot(n);if(s===0)return this.distanceToPoint(t.start)===0?e.copy(t.start):null;let r=-(t.start.dot(this.normal)+this.constant)/s;return r<0||r>1?null:e.copy(t.start).addScaledVector(n,r)}intersectsLine(t){let e=this.distanceToPoint(t.start),n=this.distanceToPoint(t.end);return e<0&&n>0||n<0&&e>0}intersectsBox(t){return t.intersectsPlane(this)}intersectsSphere(t){return t.intersectsPlane(this)}coplanarPoint(t){return t.copy(this.normal).multiplyScalar(-this.constant)}applyMatrix4(t,e){let n=e||Vv.getNormalMatrix(t),s=this.coplanarPoint(Xh).applyMatrix4(t),r=this.normal.applyMatrix3(n).normalize();return this.constant=-s.dot(r),this}translate(t){return this.constant-=t.dot(this.normal),this}equals(t){return t.normal.equals(this.normal)&&t.constant===this.constant}clone(){return new this.constructor().copy(this)}},js=new zi,el=new D,Ko=class{constructor(t=new Jn,e=new Jn,n=new Jn,s=new Jn,r=new Jn,o=new Jn){this.planes=[t,e,n,s,r,o]}set(t,e,n,s,r,o){let a=this.planes;return a[0].copy(t),a[1].copy(e),a[2].copy(n),a[3].copy(s),a[4].copy(r),a[5].copy(o),this}copy(t){let e=this.planes;for(let n=0;n<6;n++)e[n].copy(t.planes[n]);return this}setFromProjectionMatrix(t,e=as){let n=this.planes,s=t.elements,r=s[0],o=s[1],a=s[2],l=s[3],c=s[4],u=s[5],d=s[6],h=s[7],f=s[8],g=s[9],_=s[10],m=s[11],p=s[12],b=s[13],y=s[14],v=s[15];if(n[0].setComponents(l-r,h-c,m-f,v-p).normalize(),n[1].setComponents(l+r,h+c,m+f,v+p).normalize(),n[2].setComponents(l+o,h+u,m+g,v+b).normalize(),n[3].setComponents(l-o,h-u,m-g,v-b).normalize(),n[4].setComponents(l-a,h-d,m-_,v-y).normalize(),e===as)n[5].setComponents(l+a,h+d,m+_,v+y).normalize();else if(e===Ml)n[5].setComponents(a,d,_,y).normalize();else throw new Error("THREE.Frustum.setFromProjectionMatrix(): Invalid coordinate system: "+e);return this}intersectsObject(t){if(t.boundingSphere!==void 0)t.boundingSphere===null&&t.computeBoundingSphere(),js.copy(t.boundingSphere).applyMatrix4(t.matrixWorld);else{let e=t.geometry;e.boundingSphere===null&&e.computeBoundingSphere(),js.copy(e.boundingSphere).applyMatrix4(t.matrixWorld)}return this.intersectsSphere(js)}intersectsSprite(t){return js.center.set(0,0,0),js.radius=.7071067811865476,js.applyMatrix4(t.matrixWorld),this.intersectsSphere(js)}intersectsSphere(t){let e=this.planes,n=t.center,s=-t.radius;for(let r=0;r<6;r++)if(e[r].distanceToPoint(n)<s)return!1;return!0}intersectsBox(t){let e=this.planes;for(let n=0;n<6;n++){let s=e[n];if(el.x=s.normal.x>0?t.max.x:t.min.x,el.y=s.normal.y>0?t.max.y:t.min.y,el.z=s.normal.z>0?t.max.z:t.min.z,s.distanceToPoint(el)<0)return!1}return!0}containsPoint(t){let e=this.planes;for(let n=0;n<6;n++)if(e[n].distanceToPoint(t)<0)return!1;return!0}clone(){return new this.constructor().copy(this)}};function Xg(){let i=null,t=!1,e=null,n=null;function s(r,o){e(r,o),n=i.requestAnimationFrame(s)}return{start:function(){t!==!0&&e!==null&&(n=i.requestAnimationFrame(s),t=!0)},stop:function(){i.cancelAnimationFrame(n),t=!1},setAnimationLoop:function(r){e=r},setContext:function(r){i=r}}}function Hv(i){let t=new WeakMap;function e(a,l){let c=a.array,u=a.usage,d=c.byteLength,h=i.createBuffer();i.bindBuffer(l,h),i.bufferData(l,c,u),a.onUploadCallback();let f;if(c instanceof Float32Array)f=i.FLOAT;else if(c instanceof Uint16Array)a.isFloat16BufferAttribute?f=i.HALF_FLOAT:f=i.UNSIGNED_SHORT;else if(c instanceof Int16Array)f=i.SHORT;else if(c instanceof Uint32Array)f=i.UNSIGNED_INT;else if(c instanceof Int32Array)f=i.INT;else if(c instanceof Int8Array)f=i.BYTE;else if(c instanceof Uint8Array)f=i.UNSIGNED_BYTE;else if(c instanceof Uint8ClampedArray)f=i.UNSIGNED_BYTE;else throw new Error("THREE.WebGLAttributes: Unsupported buffer data format: "+c);return{buffer:h,type:f,bytesPerElement:c.BYTES_PER_ELEMENT,version:a.version,size:d}}function n(a,l,c){let u=l.array,d=l.updateRanges;if(i.bindBuffer(c,a),d.length===0)i.bufferSubData(c,0,u);else{d.sort((f,g)=>f.start-g.start);let h=0;for(let f=1;f<d.length;f++){let g=d[h],_=d[f];_.start<=g.start+g.count+1?g.count=Math.max(g.count,_.start+_.count-g.start):(++h,d[h]=_)}d.length=h+1;for(let f=0,g=d.length;f<g;f++){let _=d[f];i.bufferSubData(c,_.start*u.BYTES_PER_ELEMENT,u,_.start,_.count)}l.clearUpdateRanges()}l.onUploadCallback()}function s(a){return a.isInterleavedBufferAttribute&&(a=a.data),t.get(a)}function r(a){a.isInterleavedBufferAttribute&&(a=a.data);let l=t.get(a);l&&(i.deleteBuffer(l.buffer),t.delete(a))}function o(a,l){if(a.isInterleavedBufferAttribute&&(a=a.data),a.isGLBufferAttribute){let u=t.get(a);(!u||u.version<a.version)&&t.set(a,{buffer:a.buffer,type:a.type,bytesPerElement:a.elementSize,version:a.version});return}let c=t.get(a);if(c===void 0)t.set(a,e(a,l));else if(c.version<a.version){if(c.size!==a.array.byteLength)throw new Error("THREE.WebGLAttributes: The size of the buffer attribute's array buffer does not match the original size. Resizing buffer attributes is not supported.");n(c.buffer,a,l),c.version=a.version}}return{get:s,remove:r,update:o}}var uo=class i extends we{constructor(t=1,e=1,n=1,s=1){super(),this.type="PlaneGeometry",this.parameters={width:t,height:e,widthSegments:n,heightSegments:s};let r=t/2,o=e/2,a=Math.floor(n),l=Math.floor(s),c=a+1,u=l+1,d=t/a,h=e/l,f=[],g=[],_=[],m=[];for(let p=0;p<u;p++){let b=p*h-o;for(let y=0;y<c;y++){let v=y*d-r;g.push(v,-b,0),_.push(0,0,1),m.push(y/a),m.push(1-p/l)}}for(let p=0;p<l;p++)for(let b=0;b<a;b++){let y=b+c*p,v=b+c*(p+1),N=b+1+c*(p+1),P=b+1+c*p;f.push(y,v,P),f.push(v,N,P)}this.setIndex(f),this.setAttribute("position",new ee(g,3)),this.setAttribute("normal",new ee(_,3)),this.setAttribute("uv",new ee(m,2))}copy(t){return super.copy(t),this.parameters=Object.assign({},t.parameters),this}static fromJSON(t){return new i(t.width,t.height,t.widthSegments,t.heightSegments)}},Gv=`#ifdef USE_ALPHAHASH
+	if ( diffuseColor.a < getAlphaHashThreshold( vPosition ) ) discard;
+#endif`,Wv=`#ifdef USE_ALPHAHASH
+	const float ALPHA_HASH_SCALE = 0.05;
+	float hash2D( vec2 value ) {
+		return fract( 1.0e4 * sin( 17.0 * value.x + 0.1 * value.y ) * ( 0.1 + abs( sin( 13.0 * value.y + value.x ) ) ) );
+	}
+	float hash3D( vec3 value ) {
+		return hash2D( vec2( hash2D( value.xy ), value.z ) );
+	}
+	float getAlphaHashThreshold( vec3 position ) {
+		float maxDeriv = max(
+			length( dFdx( position.xyz ) ),
+			length( dFdy( position.xyz ) )
+		);
+		float pixScale = 1.0 / ( ALPHA_HASH_SCALE * maxDeriv );
+		vec2 pixScales = vec2(
+			exp2( floor( log2( pixScale ) ) ),
+			exp2( ceil( log2( pixScale ) ) )
+		);
+		vec2 alpha = vec2(
+			hash3D( floor( pixScales.x * position.xyz ) ),
+			hash3D( floor( pixScales.y * position.xyz ) )
+		);
+		float lerpFactor = fract( log2( pixScale ) );
+		float x = ( 1.0 - lerpFactor ) * alpha.x + lerpFactor * alpha.y;
+		float a = min( lerpFactor, 1.0 - lerpFactor );
+		vec3 cases = vec3(
+			x * x / ( 2.0 * a * ( 1.0 - a ) ),
+			( x - 0.5 * a ) / ( 1.0 - a ),
+			1.0 - ( ( 1.0 - x ) * ( 1.0 - x ) / ( 2.0 * a * ( 1.0 - a ) ) )
+		);
+		float threshold = ( x < ( 1.0 - a ) )
+			? ( ( x < a ) ? cases.x : cases.y )
+			: cases.z;
+		return clamp( threshold , 1.0e-6, 1.0 );
+	}
+#endif`,Xv=`#ifdef USE_ALPHAMAP
+	diffuseColor.a *= texture2D( alphaMap, vAlphaMapUv ).g;
+#endif`,qv=`#ifdef USE_ALPHAMAP
+	uniform sampler2D alphaMap;
+#endif`,Yv=`#ifdef USE_ALPHATEST
+	#ifdef ALPHA_TO_COVERAGE
+	diffuseColor.a = smoothstep( alphaTest, alphaTest + fwidth( diffuseColor.a ), diffuseColor.a );
+	if ( diffuseColor.a == 0.0 ) discard;
+	#else
+	if ( diffuseColor.a < alphaTest ) discard;
+	#endif
+#endif`,$v=`#ifdef USE_ALPHATEST
+	uniform float alphaTest;
+#endif`,Zv=`#ifdef USE_AOMAP
+	float ambientOcclusion = ( texture2D( aoMap, vAoMapUv ).r - 1.0 ) * aoMapIntensity + 1.0;
+	reflectedLight.indirectDiffuse *= ambientOcclusion;
+	#if defined( USE_CLEARCOAT ) 
+		clearcoatSpecularIndirect *= ambientOcclusion;
+	#endif
+	#if defined( USE_SHEEN ) 
+		sheenSpecularIndirect *= ambientOcclusion;
+	#endif
+	#if defined( USE_ENVMAP ) && defined( STANDARD )
+		float dotNV = saturate( dot( geometryNormal, geometryViewDir ) );
+		reflectedLight.indirectSpecular *= computeSpecularOcclusion( dotNV, ambientOcclusion, material.roughness );
+	#endif
+#endif`,Jv=`#ifdef USE_AOMAP
+	uniform sampler2D aoMap;
+	uniform float aoMapIntensity;
+#endif`,Kv=`#ifdef USE_BATCHING
+	#if ! defined( GL_ANGLE_multi_draw )
+	#define gl_DrawID _gl_DrawID
+	uniform int _gl_DrawID;
+	#endif
+	uniform highp sampler2D batchingTexture;
+	uniform highp usampler2D batchingIdTexture;
+	mat4 getBatchingMatrix( const in float i ) {
+		int size = textureSize( batchingTexture, 0 ).x;
+		int j = int( i ) * 4;
+		int x = j % size;
+		int y = j / size;
+		vec4 v1 = texelFetch( batchingTexture, ivec2( x, y ), 0 );
+		vec4 v2 = texelFetch( batchingTexture, ivec2( x + 1, y ), 0 );
+		vec4 v3 = texelFetch( batchingTexture, ivec2( x + 2, y ), 0 );
+		vec4 v4 = texelFetch( batchingTexture, ivec2( x + 3, y ), 0 );
+		return mat4( v1, v2, v3, v4 );
+	}
+	float getIndirectIndex( const in int i ) {
+		int size = textureSize( batchingIdTexture, 0 ).x;
+		int x = i % size;
+		int y = i / size;
+		return float( texelFetch( batchingIdTexture, ivec2( x, y ), 0 ).r );
+	}
+#endif
+#ifdef USE_BATCHING_COLOR
+	uniform sampler2D batchingColorTexture;
+	vec3 getBatchingColor( const in float i ) {
+		int size = textureSize( batchingColorTexture, 0 ).x;
+		int j = int( i );
+		int x = j % size;
+		int y = j / size;
+		return texelFetch( batchingColorTexture, ivec2( x, y ), 0 ).rgb;
+	}
+#endif`,jv=`#ifdef USE_BATCHING
+	mat4 batchingMatrix = getBatchingMatrix( getIndirectIndex( gl_DrawID ) );
+#endif`,Qv=`vec3 transformed = vec3( position );
+#ifdef USE_ALPHAHASH
+	vPosition = vec3( position );
+#endif`,tM=`vec3 objectNormal = vec3( normal );
+#ifdef USE_TANGENT
+	vec3 objectTangent = vec3( tangent.xyz );
+#endif`,eM=`float G_BlinnPhong_Implicit( ) {
+	return 0.25;
+}
+float D_BlinnPhong( const in float shininess, const in float dotNH ) {
+	return RECIPROCAL_PI * ( shininess * 0.5 + 1.0 ) * pow( dotNH, shininess );
+}
+vec3 BRDF_BlinnPhong( const in vec3 lightDir, const in vec3 viewDir, const in vec3 normal, const in vec3 specularColor, const in float shininess ) {
+	vec3 halfDir = normalize( lightDir + viewDir );
+	float dotNH = saturate( dot( normal, halfDir ) );
+	float dotVH = saturate( dot( viewDir, halfDir ) );
+	vec3 F = F_Schlick( specularColor, 1.0, dotVH );
+	float G = G_BlinnPhong_Implicit( );
+	float D = D_BlinnPhong( shininess, dotNH );
+	return F * ( G * D );
+} // validated`,nM=`#ifdef USE_IRIDESCENCE
+	const mat3 XYZ_TO_REC709 = mat3(
+		 3.2404542, -0.9692660,  0.0556434,
+		-1.5371385,  1.8760108, -0.2040259,
+		-0.4985314,  0.0415560,  1.0572252
+	);
+	vec3 Fresnel0ToIor( vec3 fresnel0 ) {
+		vec3 sqrtF0 = sqrt( fresnel0 );
+		return ( vec3( 1.0 ) + sqrtF0 ) / ( vec3( 1.0 ) - sqrtF0 );
+	}
+	vec3 IorToFresnel0( vec3 transmittedIor, float incidentIor ) {
+		return pow2( ( transmittedIor - vec3( incidentIor ) ) / ( transmittedIor + vec3( incidentIor ) ) );
+	}
+	float IorToFresnel0( float transmittedIor, float incidentIor ) {
+		return pow2( ( transmittedIor - incidentIor ) / ( transmittedIor + incidentIor ));
+	}
+	vec3 evalSensitivity( float OPD, vec3 shift ) {
+		float phase = 2.0 * PI * OPD * 1.0e-9;
+		vec3 val = vec3( 5.4856e-13, 4.4201e-13, 5.2481e-13 );
+		vec3 pos = vec3( 1.6810e+06, 1.7953e+06, 2.2084e+06 );
+		vec3 var = vec3( 4.3278e+09, 9.3046e+09, 6.6121e+09 );
+		vec3 xyz = val * sqrt( 2.0 * PI * var ) * cos( pos * phase + shift ) * exp( - pow2( phase ) * var );
+		xyz.x += 9.7470e-14 * sqrt( 2.0 * PI * 4.5282e+09 ) * cos( 2.2399e+06 * phase + shift[ 0 ] ) * exp( - 4.5282e+09 * pow2( phase ) );
+		xyz /= 1.0685e-7;
+		vec3 rgb = XYZ_TO_REC709 * xyz;
+		return rgb;
+	}
+	vec3 evalIridescence( float outsideIOR, float eta2, float cosTheta1, float thinFilmThickness, vec3 baseF0 ) {
+		vec3 I;
+		float iridescenceIOR = mix( outsideIOR, eta2, smoothstep( 0.0, 0.03, thinFilmThickness ) );
+		float sinTheta2Sq = pow2( outsideIOR / iridescenceIOR ) * ( 1.0 - pow2( cosTheta1 ) );
+		float cosTheta2Sq = 1.0 - sinTheta2Sq;
+		if ( cosTheta2Sq < 0.0 ) {
+			return vec3( 1.0 );
+		}
+		float cosTheta2 = sqrt( cosTheta2Sq );
+		float R0 = IorToFresnel0( iridescenceIOR, outsideIOR );
+		float R12 = F_Schlick( R0, 1.0, cosTheta1 );
+		float T121 = 1.0 - R12;
+		float phi12 = 0.0;
+		if ( iridescenceIOR < outsideIOR ) phi12 = PI;
+		float phi21 = PI - phi12;
+		vec3 baseIOR = Fresnel0ToIor( clamp( baseF0, 0.0, 0.9999 ) );		vec3 R1 = IorToFresnel0( baseIOR, iridescenceIOR );
+		vec3 R23 = F_Schlick( R1, 1.0, cosTheta2 );
+		vec3 phi23 = vec3( 0.0 );
+		if ( baseIOR[ 0 ] < iridescenceIOR ) phi23[ 0 ] = PI;
+		if ( baseIOR[ 1 ] < iridescenceIOR ) phi23[ 1 ] = PI;
+		if ( baseIOR[ 2 ] < iridescenceIOR ) phi23[ 2 ] = PI;
+		float OPD = 2.0 * iridescenceIOR * thinFilmThickness * cosTheta2;
+		vec3 phi = vec3( phi21 ) + phi23;
+		vec3 R123 = clamp( R12 * R23, 1e-5, 0.9999 );
+		vec3 r123 = sqrt( R123 );
+		vec3 Rs = pow2( T121 ) * R23 / ( vec3( 1.0 ) - R123 );
+		vec3 C0 = R12 + Rs;
+		I = C0;
+		vec3 Cm = Rs - T121;
+		for ( int m = 1; m <= 2; ++ m ) {
+			Cm *= r123;
+			vec3 Sm = 2.0 * evalSensitivity( float( m ) * OPD, float( m ) * phi );
+			I += Cm * Sm;
+		}
+		return max( I, vec3( 0.0 ) );
+	}
+#endif`,iM=`#ifdef USE_BUMPMAP
+	uniform sampler2D bumpMap;
+	uniform float bumpScale;
+	vec2 dHdxy_fwd() {
+		vec2 dSTdx = dFdx( vBumpMapUv );
+		vec2 dSTdy = dFdy( vBumpMapUv );
+		float Hll = bumpScale * texture2D( bumpMap, vBumpMapUv ).x;
+		float dBx = bumpScale * texture2D( bumpMap, vBumpMapUv + dSTdx ).x - Hll;
+		float dBy = bumpScale * texture2D( bumpMap, vBumpMapUv + dSTdy ).x - Hll;
+		return vec2( dBx, dBy );
+	}
+	vec3 perturbNormalArb( vec3 surf_pos, vec3 surf_norm, vec2 dHdxy, float faceDirection ) {
+		vec3 vSigmaX = normalize( dFdx( surf_pos.xyz ) );
+		vec3 vSigmaY = normalize( dFdy( surf_pos.xyz ) );
+		vec3 vN = surf_norm;
+		vec3 R1 = cross( vSigmaY, vN );
+		vec3 R2 = cross( vN, vSigmaX );
+		float fDet = dot( vSigmaX, R1 ) * faceDirection;
+		vec3 vGrad = sign( fDet ) * ( dHdxy.x * R1 + dHdxy.y * R2 );
+		return normalize( abs( fDet ) * surf_norm - vGrad );
+	}
+#endif`,sM=`#if NUM_CLIPPING_PLANES > 0
+	vec4 plane;
+	#ifdef ALPHA_TO_COVERAGE
+		float distanceToPlane, distanceGradient;
+		float clipOpacity = 1.0;
+		#pragma unroll_loop_start
+		for ( int i = 0; i < UNION_CLIPPING_PLANES; i ++ ) {
+			plane = clippingPlanes[ i ];
+			distanceToPlane = - dot( vClipPosition, plane.xyz ) + plane.w;
+			distanceGradient = fwidth( distanceToPlane ) / 2.0;
+			clipOpacity *= smoothstep( - distanceGradient, distanceGradient, distanceToPlane );
+			if ( clipOpacity == 0.0 ) discard;
+		}
+		#pragma unroll_loop_end
+		#if UNION_CLIPPING_PLANES < NUM_CLIPPING_PLANES
+			float unionClipOpacity = 1.0;
+			#pragma unroll_loop_start
+			for ( int i = UNION_CLIPPING_PLANES; i < NUM_CLIPPING_PLANES; i ++ ) {
+				plane = clippingPlanes[ i ];
+				distanceToPlane = - dot( vClipPosition, plane.xyz ) + plane.w;
+				distanceGradient = fwidth( distanceToPlane ) / 2.0;
+				unionClipOpacity *= 1.0 - smoothstep( - distanceGradient, distanceGradient, distanceToPlane );
+			}
+			#pragma unroll_loop_end
+			clipOpacity *= 1.0 - unionClipOpacity;
+		#endif
+		diffuseColor.a *= clipOpacity;
+		if ( diffuseColor.a == 0.0 ) discard;
+	#else
+		#pragma unroll_loop_start
+		for ( int i = 0; i < UNION_CLIPPING_PLANES; i ++ ) {
+			plane = clippingPlanes[ i ];
+			if ( dot( vClipPosition, plane.xyz ) > plane.w ) discard;
+		}
+		#pragma unroll_loop_end
+		#if UNION_CLIPPING_PLANES < NUM_CLIPPING_PLANES
+			bool clipped = true;
+			#pragma unroll_loop_start
+			for ( int i = UNION_CLIPPING_PLANES; i < NUM_CLIPPING_PLANES; i ++ ) {
+				plane = clippingPlanes[ i ];
+				clipped = ( dot( vClipPosition, plane.xyz ) > plane.w ) && clipped;
+			}
+			#pragma unroll_loop_end
+			if ( clipped ) discard;
+		#endif
+	#endif
+#endif`,rM=`#if NUM_CLIPPING_PLANES > 0
+	varying vec3 vClipPosition;
+	uniform vec4 clippingPlanes[ NUM_CLIPPING_PLANES ];
+#endif`,oM=`#if NUM_CLIPPING_PLANES > 0
+	varying vec3 vClipPosition;
+#endif`,aM=`#if NUM_CLIPPING_PLANES > 0
+	vClipPosition = - mvPosition.xyz;
+#endif`,lM=`#if defined( USE_COLOR_ALPHA )
+	diffuseColor *= vColor;
+#elif defined( USE_COLOR )
+	diffuseColor.rgb *= vColor;
+#endif`,cM=`#if defined( USE_COLOR_ALPHA )
+	varying vec4 vColor;
+#elif defined( USE_COLOR )
+	varying vec3 vColor;
+#endif`,hM=`#if defined( USE_COLOR_ALPHA )
+	varying vec4 vColor;
+#elif defined( USE_COLOR ) || defined( USE_INSTANCING_COLOR ) || defined( USE_BATCHING_COLOR )
+	varying vec3 vColor;
+#endif`,uM=`#if defined( USE_COLOR_ALPHA )
+	vColor = vec4( 1.0 );
+#elif defined( USE_COLOR ) || defined( USE_INSTANCING_COLOR ) || defined( USE_BATCHING_COLOR )
+	vColor = vec3( 1.0 );
+#endif
+#ifdef USE_COLOR
+	vColor *= color;
+#endif
+#ifdef USE_INSTANCING_COLOR
+	vColor.xyz *= instanceColor.xyz;
+#endif
+#ifdef USE_BATCHING_COLOR
+	vec3 batchingColor = getBatchingColor( getIndirectIndex( gl_DrawID ) );
+	vColor.xyz *= batchingColor.xyz;
+#endif`,dM=`#define PI 3.141592653589793
+#define PI2 6.283185307179586
+#define PI_HALF 1.5707963267948966
+#define RECIPROCAL_PI 0.3183098861837907
+#define RECIPROCAL_PI2 0.15915494309189535
+#define EPSILON 1e-6
+#ifndef saturate
+#define saturate( a ) clamp( a, 0.0, 1.0 )
+#endif
+#define whiteComplement( a ) ( 1.0 - saturate( a ) )
+float pow2( const in float x ) { return x*x; }
+vec3 pow2( const in vec3 x ) { return x*x; }
+float pow3( const in float x ) { return x*x*x; }
+float pow4( const in float x ) { float x2 = x*x; return x2*x2; }
+float max3( const in vec3 v ) { return max( max( v.x, v.y ), v.z ); }
+float average( const in vec3 v ) { return dot( v, vec3( 0.3333333 ) ); }
+highp float rand( const in vec2 uv ) {
+	const highp float a = 12.9898, b = 78.233, c = 43758.5453;
+	highp float dt = dot( uv.xy, vec2( a,b ) ), sn = mod( dt, PI );
+	return fract( sin( sn ) * c );
+}
+#ifdef HIGH_PRECISION
+	float precisionSafeLength( vec3 v ) { return length( v ); }
+#else
+	float precisionSafeLength( vec3 v ) {
+		float maxComponent = max3( abs( v ) );
+		return length( v / maxComponent ) * maxComponent;
+	}
+#endif
+struct IncidentLight {
+	vec3 color;
+	vec3 direction;
+	bool visible;
+};
+struct ReflectedLight {
+	vec3 directDiffuse;
+	vec3 directSpecular;
+	vec3 indirectDiffuse;
+	vec3 indirectSpecular;
+};
+#ifdef USE_ALPHAHASH
+	varying vec3 vPosition;
+#endif
+vec3 transformDirection( in vec3 dir, in mat4 matrix ) {
+	return normalize( ( matrix * vec4( dir, 0.0 ) ).xyz );
+}
+vec3 inverseTransformDirection( in vec3 dir, in mat4 matrix ) {
+	return normalize( ( vec4( dir, 0.0 ) * matrix ).xyz );
+}
+mat3 transposeMat3( const in mat3 m ) {
+	mat3 tmp;
+	tmp[ 0 ] = vec3( m[ 0 ].x, m[ 1 ].x, m[ 2 ].x );
+	tmp[ 1 ] = vec3( m[ 0 ].y, m[ 1 ].y, m[ 2 ].y );
+	tmp[ 2 ] = vec3( m[ 0 ].z, m[ 1 ].z, m[ 2 ].z );
+	return tmp;
+}
+bool isPerspectiveMatrix( mat4 m ) {
+	return m[ 2 ][ 3 ] == - 1.0;
+}
+vec2 equirectUv( in vec3 dir ) {
+	float u = atan( dir.z, dir.x ) * RECIPROCAL_PI2 + 0.5;
+	float v = asin( clamp( dir.y, - 1.0, 1.0 ) ) * RECIPROCAL_PI + 0.5;
+	return vec2( u, v );
+}
+vec3 BRDF_Lambert( const in vec3 diffuseColor ) {
+	return RECIPROCAL_PI * diffuseColor;
+}
+vec3 F_Schlick( const in vec3 f0, const in float f90, const in float dotVH ) {
+	float fresnel = exp2( ( - 5.55473 * dotVH - 6.98316 ) * dotVH );
+	return f0 * ( 1.0 - fresnel ) + ( f90 * fresnel );
+}
+float F_Schlick( const in float f0, const in float f90, const in float dotVH ) {
+	float fresnel = exp2( ( - 5.55473 * dotVH - 6.98316 ) * dotVH );
+	return f0 * ( 1.0 - fresnel ) + ( f90 * fresnel );
+} // validated`,fM=`#ifdef ENVMAP_TYPE_CUBE_UV
+	#define cubeUV_minMipLevel 4.0
+	#define cubeUV_minTileSize 16.0
+	float getFace( vec3 direction ) {
+		vec3 absDirection = abs( direction );
+		float face = - 1.0;
+		if ( absDirection.x > absDirection.z ) {
+			if ( absDirection.x > absDirection.y )
+				face = direction.x > 0.0 ? 0.0 : 3.0;
+			else
+				face = direction.y > 0.0 ? 1.0 : 4.0;
+		} else {
+			if ( absDirection.z > absDirection.y )
+				face = direction.z > 0.0 ? 2.0 : 5.0;
+			else
+				face = direction.y > 0.0 ? 1.0 : 4.0;
+		}
+		return face;
+	}
+	vec2 getUV( vec3 direction, float face ) {
+		vec2 uv;
+		if ( face == 0.0 ) {
+			uv = vec2( direction.z, direction.y ) / abs( direction.x );
+		} else if ( face == 1.0 ) {
+			uv = vec2( - direction.x, - direction.z ) / abs( direction.y );
+		} else if ( face == 2.0 ) {
+			uv = vec2( - direction.x, direction.y ) / abs( direction.z );
+		} else if ( face == 3.0 ) {
+			uv = vec2( - direction.z, direction.y ) / abs( direction.x );
+		} else if ( face == 4.0 ) {
+			uv = vec2( - direction.x, direction.z ) / abs( direction.y );
+		} else {
+			uv = vec2( direction.x, direction.y ) / abs( direction.z );
+		}
+		return 0.5 * ( uv + 1.0 );
+	}
+	vec3 bilinearCubeUV( sampler2D envMap, vec3 direction, float mipInt ) {
+		float face = getFace( direction );
+		float filterInt = max( cubeUV_minMipLevel - mipInt, 0.0 );
+		mipInt = max( mipInt, cubeUV_minMipLevel );
+		float faceSize = exp2( mipInt );
+		highp vec2 uv = getUV( direction, face ) * ( faceSize - 2.0 ) + 1.0;
+		if ( face > 2.0 ) {
+			uv.y += faceSize;
+			face -= 3.0;
+		}
+		uv.x += face * faceSize;
+		uv.x += filterInt * 3.0 * cubeUV_minTileSize;
+		uv.y += 4.0 * ( exp2( CUBEUV_MAX_MIP ) - faceSize );
+		uv.x *= CUBEUV_TEXEL_WIDTH;
+		uv.y *= CUBEUV_TEXEL_HEIGHT;
+		#ifdef texture2DGradEXT
+			return texture2DGradEXT( envMap, uv, vec2( 0.0 ), vec2( 0.0 ) ).rgb;
+		#else
+			return texture2D( envMap, uv ).rgb;
+		#endif
+	}
+	#define cubeUV_r0 1.0
+	#define cubeUV_m0 - 2.0
+	#define cubeUV_r1 0.8
+	#define cubeUV_m1 - 1.0
+	#define cubeUV_r4 0.4
+	#define cubeUV_m4 2.0
+	#define cubeUV_r5 0.305
+	#define cubeUV_m5 3.0
+	#define cubeUV_r6 0.21
+	#define cubeUV_m6 4.0
+	float roughnessToMip( float roughness ) {
+		float mip = 0.0;
+		if ( roughness >= cubeUV_r1 ) {
+			mip = ( cubeUV_r0 - roughness ) * ( cubeUV_m1 - cubeUV_m0 ) / ( cubeUV_r0 - cubeUV_r1 ) + cubeUV_m0;
+		} else if ( roughness >= cubeUV_r4 ) {
+			mip = ( cubeUV_r1 - roughness ) * ( cubeUV_m4 - cubeUV_m1 ) / ( cubeUV_r1 - cubeUV_r4 ) + cubeUV_m1;
+		} else if ( roughness >= cubeUV_r5 ) {
+			mip = ( cubeUV_r4 - roughness ) * ( cubeUV_m5 - cubeUV_m4 ) / ( cubeUV_r4 - cubeUV_r5 ) + cubeUV_m4;
+		} else if ( roughness >= cubeUV_r6 ) {
+			mip = ( cubeUV_r5 - roughness ) * ( cubeUV_m6 - cubeUV_m5 ) / ( cubeUV_r5 - cubeUV_r6 ) + cubeUV_m5;
+		} else {
+			mip = - 2.0 * log2( 1.16 * roughness );		}
+		return mip;
+	}
+	vec4 textureCubeUV( sampler2D envMap, vec3 sampleDir, float roughness ) {
+		float mip = clamp( roughnessToMip( roughness ), cubeUV_m0, CUBEUV_MAX_MIP );
+		float mipF = fract( mip );
+		float mipInt = floor( mip );
+		vec3 color0 = bilinearCubeUV( envMap, sampleDir, mipInt );
+		if ( mipF == 0.0 ) {
+			return vec4( color0, 1.0 );
+		} else {
+			vec3 color1 = bilinearCubeUV( envMap, sampleDir, mipInt + 1.0 );
+			return vec4( mix( color0, color1, mipF ), 1.0 );
+		}
+	}
+#endif`,pM=`vec3 transformedNormal = objectNormal;
+#ifdef USE_TANGENT
+	vec3 transformedTangent = objectTangent;
+#endif
+#ifdef USE_BATCHING
+	mat3 bm = mat3( batchingMatrix );
+	transformedNormal /= vec3( dot( bm[ 0 ], bm[ 0 ] ), dot( bm[ 1 ], bm[ 1 ] ), dot( bm[ 2 ], bm[ 2 ] ) );
+	transformedNormal = bm * transformedNormal;
+	#ifdef USE_TANGENT
+		transformedTangent = bm * transformedTangent;
+	#endif
+#endif
+#ifdef USE_INSTANCING
+	mat3 im = mat3( instanceMatrix );
+	transformedNormal /= vec3( dot( im[ 0 ], im[ 0 ] ), dot( im[ 1 ], im[ 1 ] ), dot( im[ 2 ], im[ 2 ] ) );
+	transformedNormal = im * transformedNormal;
+	#ifdef USE_TANGENT
+		transformedTangent = im * transformedTangent;
+	#endif
+#endif
+transformedNormal = normalMatrix * transformedNormal;
+#ifdef FLIP_SIDED
+	transformedNormal = - transformedNormal;
+#endif
+#ifdef USE_TANGENT
+	transformedTangent = ( modelViewMatrix * vec4( transformedTangent, 0.0 ) ).xyz;
+	#ifdef FLIP_SIDED
+		transformedTangent = - transformedTangent;
+	#endif
+#endif`,mM=`#ifdef USE_DISPLACEMENTMAP
+	uniform sampler2D displacementMap;
+	uniform float displacementScale;
+	uniform float displacementBias;
+#endif`,gM=`#ifdef USE_DISPLACEMENTMAP
+	transformed += normalize( objectNormal ) * ( texture2D( displacementMap, vDisplacementMapUv ).x * displacementScale + displacementBias );
+#endif`,_M=`#ifdef USE_EMISSIVEMAP
+	vec4 emissiveColor = texture2D( emissiveMap, vEmissiveMapUv );
+	#ifdef DECODE_VIDEO_TEXTURE_EMISSIVE
+		emissiveColor = sRGBTransferEOTF( emissiveColor );
+	#endif
+	totalEmissiveRadiance *= emissiveColor.rgb;
+#endif`,xM=`#ifdef USE_EMISSIVEMAP
+	uniform sampler2D emissiveMap;
+#endif`,yM="gl_FragColor = linearToOutputTexel( gl_FragColor );",vM=`vec4 LinearTransferOETF( in vec4 value ) {
+	return value;
+}
+vec4 sRGBTransferEOTF( in vec4 value ) {
+	return vec4( mix( pow( value.rgb * 0.9478672986 + vec3( 0.0521327014 ), vec3( 2.4 ) ), value.rgb * 0.0773993808, vec3( lessThanEqual( value.rgb, vec3( 0.04045 ) ) ) ), value.a );
+}
+vec4 sRGBTransferOETF( in vec4 value ) {
+	return vec4( mix( pow( value.rgb, vec3( 0.41666 ) ) * 1.055 - vec3( 0.055 ), value.rgb * 12.92, vec3( lessThanEqual( value.rgb, vec3( 0.0031308 ) ) ) ), value.a );
+}`,MM=`#ifdef USE_ENVMAP
+	#ifdef ENV_WORLDPOS
+		vec3 cameraToFrag;
+		if ( isOrthographic ) {
+			cameraToFrag = normalize( vec3( - viewMatrix[ 0 ][ 2 ], - viewMatrix[ 1 ][ 2 ], - viewMatrix[ 2 ][ 2 ] ) );
+		} else {
+			cameraToFrag = normalize( vWorldPosition - cameraPosition );
+		}
+		vec3 worldNormal = inverseTransformDirection( normal, viewMatrix );
+		#ifdef ENVMAP_MODE_REFLECTION
+			vec3 reflectVec = reflect( cameraToFrag, worldNormal );
+		#else
+			vec3 reflectVec = refract( cameraToFrag, worldNormal, refractionRatio );
+		#endif
+	#else
+		vec3 reflectVec = vReflect;
+	#endif
+	#ifdef ENVMAP_TYPE_CUBE
+		vec4 envColor = textureCube( envMap, envMapRotation * vec3( flipEnvMap * reflectVec.x, reflectVec.yz ) );
+	#else
+		vec4 envColor = vec4( 0.0 );
+	#endif
+	#ifdef ENVMAP_BLENDING_MULTIPLY
+		outgoingLight = mix( outgoingLight, outgoingLight * envColor.xyz, specularStrength * reflectivity );
+	#elif defined( ENVMAP_BLENDING_MIX )
+		outgoingLight = mix( outgoingLight, envColor.xyz, specularStrength * reflectivity );
+	#elif defined( ENVMAP_BLENDING_ADD )
+		outgoingLight += envColor.xyz * specularStrength * reflectivity;
+	#endif
+#endif`,SM=`#ifdef USE_ENVMAP
+	uniform float envMapIntensity;
+	uniform float flipEnvMap;
+	uniform mat3 envMapRotation;
+	#ifdef ENVMAP_TYPE_CUBE
+		uniform samplerCube envMap;
+	#else
+		uniform sampler2D envMap;
+	#endif
+	
+#endif`,bM=`#ifdef USE_ENVMAP
+	uniform float reflectivity;
+	#if defined( USE_BUMPMAP ) || defined( USE_NORMALMAP ) || defined( PHONG ) || defined( LAMBERT )
+		#define ENV_WORLDPOS
+	#endif
+	#ifdef ENV_WORLDPOS
+		varying vec3 vWorldPosition;
+		uniform float refractionRatio;
+	#else
+		varying vec3 vReflect;
+	#endif
+#endif`,wM=`#ifdef USE_ENVMAP
+	#if defined( USE_BUMPMAP ) || defined( USE_NORMALMAP ) || defined( PHONG ) || defined( LAMBERT )
+		#define ENV_WORLDPOS
+	#endif
+	#ifdef ENV_WORLDPOS
+		
+		varying vec3 vWorldPosition;
+	#else
+		varying vec3 vReflect;
+		uniform float refractionRatio;
+	#endif
+#endif`,EM=`#ifdef USE_ENVMAP
+	#ifdef ENV_WORLDPOS
+		vWorldPosition = worldPosition.xyz;
+	#else
+		vec3 cameraToVertex;
+		if ( isOrthographic ) {
+			cameraToVertex = normalize( vec3( - viewMatrix[ 0 ][ 2 ], - viewMatrix[ 1 ][ 2 ], - viewMatrix[ 2 ][ 2 ] ) );
+		} else {
+			cameraToVertex = normalize( worldPosition.xyz - cameraPosition );
+		}
+		vec3 worldNormal = inverseTransformDirection( transformedNormal, viewMatrix );
+		#ifdef ENVMAP_MODE_REFLECTION
+			vReflect = reflect( cameraToVertex, worldNormal );
+		#else
+			vReflect = refract( cameraToVertex, worldNormal, refractionRatio );
+		#endif
+	#endif
+#endif`,TM=`#ifdef USE_FOG
+	vFogDepth = - mvPosition.z;
+#endif`,AM=`#ifdef USE_FOG
+	varying float vFogDepth;
+#endif`,CM=`#ifdef USE_FOG
+	#ifdef FOG_EXP2
+		float fogFactor = 1.0 - exp( - fogDensity * fogDensity * vFogDepth * vFogDepth );
+	#else
+		float fogFactor = smoothstep( fogNear, fogFar, vFogDepth );
+	#endif
+	gl_FragColor.rgb = mix( gl_FragColor.rgb, fogColor, fogFactor );
+#endif`,RM=`#ifdef USE_FOG
+	uniform vec3 fogColor;
+	varying float vFogDepth;
+	#ifdef FOG_EXP2
+		uniform float fogDensity;
+	#else
+		uniform float fogNear;
+		uniform float fogFar;
+	#endif
+#endif`,PM=`#ifdef USE_GRADIENTMAP
+	uniform sampler2D gradientMap;
+#endif
+vec3 getGradientIrradiance( vec3 normal, vec3 lightDirection ) {
+	float dotNL = dot( normal, lightDirection );
+	vec2 coord = vec2( dotNL * 0.5 + 0.5, 0.0 );
+	#ifdef USE_GRADIENTMAP
+		return vec3( texture2D( gradientMap, coord ).r );
+	#else
+		vec2 fw = fwidth( coord ) * 0.5;
+		return mix( vec3( 0.7 ), vec3( 1.0 ), smoothstep( 0.7 - fw.x, 0.7 + fw.x, coord.x ) );
+	#endif
+}`,IM=`#ifdef USE_LIGHTMAP
+	uniform sampler2D lightMap;
+	uniform float lightMapIntensity;
+#endif`,LM=`LambertMaterial material;
+material.diffuseColor = diffuseColor.rgb;
+material.specularStrength = specularStrength;`,DM=`varying vec3 vViewPosition;
+struct LambertMaterial {
+	vec3 diffuseColor;
+	float specularStrength;
+};
+void RE_Direct_Lambert( const in IncidentLight directLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in LambertMaterial material, inout ReflectedLight reflectedLight ) {
+	float dotNL = saturate( dot( geometryNormal, directLight.direction ) );
+	vec3 irradiance = dotNL * directLight.color;
+	reflectedLight.directDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+}
+void RE_IndirectDiffuse_Lambert( const in vec3 irradiance, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in LambertMaterial material, inout ReflectedLight reflectedLight ) {
+	reflectedLight.indirectDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+}
+#define RE_Direct				RE_Direct_Lambert
+#define RE_IndirectDiffuse		RE_IndirectDiffuse_Lambert`,UM=`uniform bool receiveShadow;
+uniform vec3 ambientLightColor;
+#if defined( USE_LIGHT_PROBES )
+	uniform vec3 lightProbe[ 9 ];
+#endif
+vec3 shGetIrradianceAt( in vec3 normal, in vec3 shCoefficients[ 9 ] ) {
+	float x = normal.x, y = normal.y, z = normal.z;
+	vec3 result = shCoefficients[ 0 ] * 0.886227;
+	result += shCoefficients[ 1 ] * 2.0 * 0.511664 * y;
+	result += shCoefficients[ 2 ] * 2.0 * 0.511664 * z;
+	result += shCoefficients[ 3 ] * 2.0 * 0.511664 * x;
+	result += shCoefficients[ 4 ] * 2.0 * 0.429043 * x * y;
+	result += shCoefficients[ 5 ] * 2.0 * 0.429043 * y * z;
+	result += shCoefficients[ 6 ] * ( 0.743125 * z * z - 0.247708 );
+	result += shCoefficients[ 7 ] * 2.0 * 0.429043 * x * z;
+	result += shCoefficients[ 8 ] * 0.429043 * ( x * x - y * y );
+	return result;
+}
+vec3 getLightProbeIrradiance( const in vec3 lightProbe[ 9 ], const in vec3 normal ) {
+	vec3 worldNormal = inverseTransformDirection( normal, viewMatrix );
+	vec3 irradiance = shGetIrradianceAt( worldNormal, lightProbe );
+	return irradiance;
+}
+vec3 getAmbientLightIrradiance( const in vec3 ambientLightColor ) {
+	vec3 irradiance = ambientLightColor;
+	return irradiance;
+}
+float getDistanceAttenuation( const in float lightDistance, const in float cutoffDistance, const in float decayExponent ) {
+	float distanceFalloff = 1.0 / max( pow( lightDistance, decayExponent ), 0.01 );
+	if ( cutoffDistance > 0.0 ) {
+		distanceFalloff *= pow2( saturate( 1.0 - pow4( lightDistance / cutoffDistance ) ) );
+	}
+	return distanceFalloff;
+}
+float getSpotAttenuation( const in float coneCosine, const in float penumbraCosine, const in float angleCosine ) {
+	return smoothstep( coneCosine, penumbraCosine, angleCosine );
+}
+#if NUM_DIR_LIGHTS > 0
+	struct DirectionalLight {
+		vec3 direction;
+		vec3 color;
+	};
+	uniform DirectionalLight directionalLights[ NUM_DIR_LIGHTS ];
+	void getDirectionalLightInfo( const in DirectionalLight directionalLight, out IncidentLight light ) {
+		light.color = directionalLight.color;
+		light.direction = directionalLight.direction;
+		light.visible = true;
+	}
+#endif
+#if NUM_POINT_LIGHTS > 0
+	struct PointLight {
+		vec3 position;
+		vec3 color;
+		float distance;
+		float decay;
+	};
+	uniform PointLight pointLights[ NUM_POINT_LIGHTS ];
+	void getPointLightInfo( const in PointLight pointLight, const in vec3 geometryPosition, out IncidentLight light ) {
+		vec3 lVector = pointLight.position - geometryPosition;
+		light.direction = normalize( lVector );
+		float lightDistance = length( lVector );
+		light.color = pointLight.color;
+		light.color *= getDistanceAttenuation( lightDistance, pointLight.distance, pointLight.decay );
+		light.visible = ( light.color != vec3( 0.0 ) );
+	}
+#endif
+#if NUM_SPOT_LIGHTS > 0
+	struct SpotLight {
+		vec3 position;
+		vec3 direction;
+		vec3 color;
+		float distance;
+		float decay;
+		float coneCos;
+		float penumbraCos;
+	};
+	uniform SpotLight spotLights[ NUM_SPOT_LIGHTS ];
+	void getSpotLightInfo( const in SpotLight spotLight, const in vec3 geometryPosition, out IncidentLight light ) {
+		vec3 lVector = spotLight.position - geometryPosition;
+		light.direction = normalize( lVector );
+		float angleCos = dot( light.direction, spotLight.direction );
+		float spotAttenuation = getSpotAttenuation( spotLight.coneCos, spotLight.penumbraCos, angleCos );
+		if ( spotAttenuation > 0.0 ) {
+			float lightDistance = length( lVector );
+			light.color = spotLight.color * spotAttenuation;
+			light.color *= getDistanceAttenuation( lightDistance, spotLight.distance, spotLight.decay );
+			light.visible = ( light.color != vec3( 0.0 ) );
+		} else {
+			light.color = vec3( 0.0 );
+			light.visible = false;
+		}
+	}
+#endif
+#if NUM_RECT_AREA_LIGHTS > 0
+	struct RectAreaLight {
+		vec3 color;
+		vec3 position;
+		vec3 halfWidth;
+		vec3 halfHeight;
+	};
+	uniform sampler2D ltc_1;	uniform sampler2D ltc_2;
+	uniform RectAreaLight rectAreaLights[ NUM_RECT_AREA_LIGHTS ];
+#endif
+#if NUM_HEMI_LIGHTS > 0
+	struct HemisphereLight {
+		vec3 direction;
+		vec3 skyColor;
+		vec3 groundColor;
+	};
+	uniform HemisphereLight hemisphereLights[ NUM_HEMI_LIGHTS ];
+	vec3 getHemisphereLightIrradiance( const in HemisphereLight hemiLight, const in vec3 normal ) {
+		float dotNL = dot( normal, hemiLight.direction );
+		float hemiDiffuseWeight = 0.5 * dotNL + 0.5;
+		vec3 irradiance = mix( hemiLight.groundColor, hemiLight.skyColor, hemiDiffuseWeight );
+		return irradiance;
+	}
+#endif`,NM=`#ifdef USE_ENVMAP
+	vec3 getIBLIrradiance( const in vec3 normal ) {
+		#ifdef ENVMAP_TYPE_CUBE_UV
+			vec3 worldNormal = inverseTransformDirection( normal, viewMatrix );
+			vec4 envMapColor = textureCubeUV( envMap, envMapRotation * worldNormal, 1.0 );
+			return PI * envMapColor.rgb * envMapIntensity;
+		#else
+			return vec3( 0.0 );
+		#endif
+	}
+	vec3 getIBLRadiance( const in vec3 viewDir, const in vec3 normal, const in float roughness ) {
+		#ifdef ENVMAP_TYPE_CUBE_UV
+			vec3 reflectVec = reflect( - viewDir, normal );
+			reflectVec = normalize( mix( reflectVec, normal, roughness * roughness) );
+			reflectVec = inverseTransformDirection( reflectVec, viewMatrix );
+			vec4 envMapColor = textureCubeUV( envMap, envMapRotation * reflectVec, roughness );
+			return envMapColor.rgb * envMapIntensity;
+		#else
+			return vec3( 0.0 );
+		#endif
+	}
+	#ifdef USE_ANISOTROPY
+		vec3 getIBLAnisotropyRadiance( const in vec3 viewDir, const in vec3 normal, const in float roughness, const in vec3 bitangent, const in float anisotropy ) {
+			#ifdef ENVMAP_TYPE_CUBE_UV
+				vec3 bentNormal = cross( bitangent, viewDir );
+				bentNormal = normalize( cross( bentNormal, bitangent ) );
+				bentNormal = normalize( mix( bentNormal, normal, pow2( pow2( 1.0 - anisotropy * ( 1.0 - roughness ) ) ) ) );
+				return getIBLRadiance( viewDir, bentNormal, roughness );
+			#else
+				return vec3( 0.0 );
+			#endif
+		}
+	#endif
+#endif`,FM=`ToonMaterial material;
+material.diffuseColor = diffuseColor.rgb;`,OM=`varying vec3 vViewPosition;
+struct ToonMaterial {
+	vec3 diffuseColor;
+};
+void RE_Direct_Toon( const in IncidentLight directLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in ToonMaterial material, inout ReflectedLight reflectedLight ) {
+	vec3 irradiance = getGradientIrradiance( geometryNormal, directLight.direction ) * directLight.color;
+	reflectedLight.directDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+}
+void RE_IndirectDiffuse_Toon( const in vec3 irradiance, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in ToonMaterial material, inout ReflectedLight reflectedLight ) {
+	reflectedLight.indirectDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+}
+#define RE_Direct				RE_Direct_Toon
+#define RE_IndirectDiffuse		RE_IndirectDiffuse_Toon`,BM=`BlinnPhongMaterial material;
+material.diffuseColor = diffuseColor.rgb;
+material.specularColor = specular;
+material.specularShininess = shininess;
+material.specularStrength = specularStrength;`,zM=`varying vec3 vViewPosition;
+struct BlinnPhongMaterial {
+	vec3 diffuseColor;
+	vec3 specularColor;
+	float specularShininess;
+	float specularStrength;
+};
+void RE_Direct_BlinnPhong( const in IncidentLight directLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in BlinnPhongMaterial material, inout ReflectedLight reflectedLight ) {
+	float dotNL = saturate( dot( geometryNormal, directLight.direction ) );
+	vec3 irradiance = dotNL * directLight.color;
+	reflectedLight.directDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+	reflectedLight.directSpecular += irradiance * BRDF_BlinnPhong( directLight.direction, geometryViewDir, geometryNormal, material.specularColor, material.specularShininess ) * material.specularStrength;
+}
+void RE_IndirectDiffuse_BlinnPhong( const in vec3 irradiance, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in BlinnPhongMaterial material, inout ReflectedLight reflectedLight ) {
+	reflectedLight.indirectDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+}
+#define RE_Direct				RE_Direct_BlinnPhong
+#define RE_IndirectDiffuse		RE_IndirectDiffuse_BlinnPhong`,kM=`PhysicalMaterial material;
+material.diffuseColor = diffuseColor.rgb * ( 1.0 - metalnessFactor );
+vec3 dxy = max( abs( dFdx( nonPerturbedNormal ) ), abs( dFdy( nonPerturbedNormal ) ) );
+float geometryRoughness = max( max( dxy.x, dxy.y ), dxy.z );
+material.roughness = max( roughnessFactor, 0.0525 );material.roughness += geometryRoughness;
+material.roughness = min( material.roughness, 1.0 );
+#ifdef IOR
+	material.ior = ior;
+	#ifdef USE_SPECULAR
+		float specularIntensityFactor = specularIntensity;
+		vec3 specularColorFactor = specularColor;
+		#ifdef USE_SPECULAR_COLORMAP
+			specularColorFactor *= texture2D( specularColorMap, vSpecularColorMapUv ).rgb;
+		#endif
+		#ifdef USE_SPECULAR_INTENSITYMAP
+			specularIntensityFactor *= texture2D( specularIntensityMap, vSpecularIntensityMapUv ).a;
+		#endif
+		material.specularF90 = mix( specularIntensityFactor, 1.0, metalnessFactor );
+	#else
+		float specularIntensityFactor = 1.0;
+		vec3 specularColorFactor = vec3( 1.0 );
+		material.specularF90 = 1.0;
+	#endif
+	material.specularColor = mix( min( pow2( ( material.ior - 1.0 ) / ( material.ior + 1.0 ) ) * specularColorFactor, vec3( 1.0 ) ) * specularIntensityFactor, diffuseColor.rgb, metalnessFactor );
+#else
+	material.specularColor = mix( vec3( 0.04 ), diffuseColor.rgb, metalnessFactor );
+	material.specularF90 = 1.0;
+#endif
+#ifdef USE_CLEARCOAT
+	material.clearcoat = clearcoat;
+	material.clearcoatRoughness = clearcoatRoughness;
+	material.clearcoatF0 = vec3( 0.04 );
+	material.clearcoatF90 = 1.0;
+	#ifdef USE_CLEARCOATMAP
+		material.clearcoat *= texture2D( clearcoatMap, vClearcoatMapUv ).x;
+	#endif
+	#ifdef USE_CLEARCOAT_ROUGHNESSMAP
+		material.clearcoatRoughness *= texture2D( clearcoatRoughnessMap, vClearcoatRoughnessMapUv ).y;
+	#endif
+	material.clearcoat = saturate( material.clearcoat );	material.clearcoatRoughness = max( material.clearcoatRoughness, 0.0525 );
+	material.clearcoatRoughness += geometryRoughness;
+	material.clearcoatRoughness = min( material.clearcoatRoughness, 1.0 );
+#endif
+#ifdef USE_DISPERSION
+	material.dispersion = dispersion;
+#endif
+#ifdef USE_IRIDESCENCE
+	material.iridescence = iridescence;
+	material.iridescenceIOR = iridescenceIOR;
+	#ifdef USE_IRIDESCENCEMAP
+		material.iridescence *= texture2D( iridescenceMap, vIridescenceMapUv ).r;
+	#endif
+	#ifdef USE_IRIDESCENCE_THICKNESSMAP
+		material.iridescenceThickness = (iridescenceThicknessMaximum - iridescenceThicknessMinimum) * texture2D( iridescenceThicknessMap, vIridescenceThicknessMapUv ).g + iridescenceThicknessMinimum;
+	#else
+		material.iridescenceThickness = iridescenceThicknessMaximum;
+	#endif
+#endif
+#ifdef USE_SHEEN
+	material.sheenColor = sheenColor;
+	#ifdef USE_SHEEN_COLORMAP
+		material.sheenColor *= texture2D( sheenColorMap, vSheenColorMapUv ).rgb;
+	#endif
+	material.sheenRoughness = clamp( sheenRoughness, 0.07, 1.0 );
+	#ifdef USE_SHEEN_ROUGHNESSMAP
+		material.sheenRoughness *= texture2D( sheenRoughnessMap, vSheenRoughnessMapUv ).a;
+	#endif
+#endif
+#ifdef USE_ANISOTROPY
+	#ifdef USE_ANISOTROPYMAP
+		mat2 anisotropyMat = mat2( anisotropyVector.x, anisotropyVector.y, - anisotropyVector.y, anisotropyVector.x );
+		vec3 anisotropyPolar = texture2D( anisotropyMap, vAnisotropyMapUv ).rgb;
+		vec2 anisotropyV = anisotropyMat * normalize( 2.0 * anisotropyPolar.rg - vec2( 1.0 ) ) * anisotropyPolar.b;
+	#else
+		vec2 anisotropyV = anisotropyVector;
+	#endif
+	material.anisotropy = length( anisotropyV );
+	if( material.anisotropy == 0.0 ) {
+		anisotropyV = vec2( 1.0, 0.0 );
+	} else {
+		anisotropyV /= material.anisotropy;
+		material.anisotropy = saturate( material.anisotropy );
+	}
+	material.alphaT = mix( pow2( material.roughness ), 1.0, pow2( material.anisotropy ) );
+	material.anisotropyT = tbn[ 0 ] * anisotropyV.x + tbn[ 1 ] * anisotropyV.y;
+	material.anisotropyB = tbn[ 1 ] * anisotropyV.x - tbn[ 0 ] * anisotropyV.y;
+#endif`,VM=`struct PhysicalMaterial {
+	vec3 diffuseColor;
+	float roughness;
+	vec3 specularColor;
+	float specularF90;
+	float dispersion;
+	#ifdef USE_CLEARCOAT
+		float clearcoat;
+		float clearcoatRoughness;
+		vec3 clearcoatF0;
+		float clearcoatF90;
+	#endif
+	#ifdef USE_IRIDESCENCE
+		float iridescence;
+		float iridescenceIOR;
+		float iridescenceThickness;
+		vec3 iridescenceFresnel;
+		vec3 iridescenceF0;
+	#endif
+	#ifdef USE_SHEEN
+		vec3 sheenColor;
+		float sheenRoughness;
+	#endif
+	#ifdef IOR
+		float ior;
+	#endif
+	#ifdef USE_TRANSMISSION
+		float transmission;
+		float transmissionAlpha;
+		float thickness;
+		float attenuationDistance;
+		vec3 attenuationColor;
+	#endif
+	#ifdef USE_ANISOTROPY
+		float anisotropy;
+		float alphaT;
+		vec3 anisotropyT;
+		vec3 anisotropyB;
+	#endif
+};
+vec3 clearcoatSpecularDirect = vec3( 0.0 );
+vec3 clearcoatSpecularIndirect = vec3( 0.0 );
+vec3 sheenSpecularDirect = vec3( 0.0 );
+vec3 sheenSpecularIndirect = vec3(0.0 );
+vec3 Schlick_to_F0( const in vec3 f, const in float f90, const in float dotVH ) {
+    float x = clamp( 1.0 - dotVH, 0.0, 1.0 );
+    float x2 = x * x;
+    float x5 = clamp( x * x2 * x2, 0.0, 0.9999 );
+    return ( f - vec3( f90 ) * x5 ) / ( 1.0 - x5 );
+}
+float V_GGX_SmithCorrelated( const in float alpha, const in float dotNL, const in float dotNV ) {
+	float a2 = pow2( alpha );
+	float gv = dotNL * sqrt( a2 + ( 1.0 - a2 ) * pow2( dotNV ) );
+	float gl = dotNV * sqrt( a2 + ( 1.0 - a2 ) * pow2( dotNL ) );
+	return 0.5 / max( gv + gl, EPSILON );
+}
+float D_GGX( const in float alpha, const in float dotNH ) {
+	float a2 = pow2( alpha );
+	float denom = pow2( dotNH ) * ( a2 - 1.0 ) + 1.0;
+	return RECIPROCAL_PI * a2 / pow2( denom );
+}
+#ifdef USE_ANISOTROPY
+	float V_GGX_SmithCorrelated_Anisotropic( const in float alphaT, const in float alphaB, const in float dotTV, const in float dotBV, const in float dotTL, const in float dotBL, const in float dotNV, const in float dotNL ) {
+		float gv = dotNL * length( vec3( alphaT * dotTV, alphaB * dotBV, dotNV ) );
+		float gl = dotNV * length( vec3( alphaT * dotTL, alphaB * dotBL, dotNL ) );
+		float v = 0.5 / ( gv + gl );
+		return saturate(v);
+	}
+	float D_GGX_Anisotropic( const in float alphaT, const in float alphaB, const in float dotNH, const in float dotTH, const in float dotBH ) {
+		float a2 = alphaT * alphaB;
+		highp vec3 v = vec3( alphaB * dotTH, alphaT * dotBH, a2 * dotNH );
+		highp float v2 = dot( v, v );
+		float w2 = a2 / v2;
+		return RECIPROCAL_PI * a2 * pow2 ( w2 );
+	}
+#endif
+#ifdef USE_CLEARCOAT
+	vec3 BRDF_GGX_Clearcoat( const in vec3 lightDir, const in vec3 viewDir, const in vec3 normal, const in PhysicalMaterial material) {
+		vec3 f0 = material.clearcoatF0;
+		float f90 = material.clearcoatF90;
+		float roughness = material.clearcoatRoughness;
+		float alpha = pow2( roughness );
+		vec3 halfDir = normalize( lightDir + viewDir );
+		float dotNL = saturate( dot( normal, lightDir ) );
+		float dotNV = saturate( dot( normal, viewDir ) );
+		float dotNH = saturate( dot( normal, halfDir ) );
+		float dotVH = saturate( dot( viewDir, halfDir ) );
+		vec3 F = F_Schlick( f0, f90, dotVH );
+		float V = V_GGX_SmithCorrelated( alpha, dotNL, dotNV );
+		float D = D_GGX( alpha, dotNH );
+		return F * ( V * D );
+	}
+#endif
+vec3 BRDF_GGX( const in vec3 lightDir, const in vec3 viewDir, const in vec3 normal, const in PhysicalMaterial material ) {
+	vec3 f0 = material.specularColor;
+	float f90 = material.specularF90;
+	float roughness = material.roughness;
+	float alpha = pow2( roughness );
+	vec3 halfDir = normalize( lightDir + viewDir );
+	float dotNL = saturate( dot( normal, lightDir ) );
+	float dotNV = saturate( dot( normal, viewDir ) );
+	float dotNH = saturate( dot( normal, halfDir ) );
+	float dotVH = saturate( dot( viewDir, halfDir ) );
+	vec3 F = F_Schlick( f0, f90, dotVH );
+	#ifdef USE_IRIDESCENCE
+		F = mix( F, material.iridescenceFresnel, material.iridescence );
+	#endif
+	#ifdef USE_ANISOTROPY
+		float dotTL = dot( material.anisotropyT, lightDir );
+		float dotTV = dot( material.anisotropyT, viewDir );
+		float dotTH = dot( material.anisotropyT, halfDir );
+		float dotBL = dot( material.anisotropyB, lightDir );
+		float dotBV = dot( material.anisotropyB, viewDir );
+		float dotBH = dot( material.anisotropyB, halfDir );
+		float V = V_GGX_SmithCorrelated_Anisotropic( material.alphaT, alpha, dotTV, dotBV, dotTL, dotBL, dotNV, dotNL );
+		float D = D_GGX_Anisotropic( material.alphaT, alpha, dotNH, dotTH, dotBH );
+	#else
+		float V = V_GGX_SmithCorrelated( alpha, dotNL, dotNV );
+		float D = D_GGX( alpha, dotNH );
+	#endif
+	return F * ( V * D );
+}
+vec2 LTC_Uv( const in vec3 N, const in vec3 V, const in float roughness ) {
+	const float LUT_SIZE = 64.0;
+	const float LUT_SCALE = ( LUT_SIZE - 1.0 ) / LUT_SIZE;
+	const float LUT_BIAS = 0.5 / LUT_SIZE;
+	float dotNV = saturate( dot( N, V ) );
+	vec2 uv = vec2( roughness, sqrt( 1.0 - dotNV ) );
+	uv = uv * LUT_SCALE + LUT_BIAS;
+	return uv;
+}
+float LTC_ClippedSphereFormFactor( const in vec3 f ) {
+	float l = length( f );
+	return max( ( l * l + f.z ) / ( l + 1.0 ), 0.0 );
+}
+vec3 LTC_EdgeVectorFormFactor( const in vec3 v1, const in vec3 v2 ) {
+	float x = dot( v1, v2 );
+	float y = abs( x );
+	float a = 0.8543985 + ( 0.4965155 + 0.0145206 * y ) * y;
+	float b = 3.4175940 + ( 4.1616724 + y ) * y;
+	float v = a / b;
+	float theta_sintheta = ( x > 0.0 ) ? v : 0.5 * inversesqrt( max( 1.0 - x * x, 1e-7 ) ) - v;
+	return cross( v1, v2 ) * theta_sintheta;
+}
+vec3 LTC_Evaluate( const in vec3 N, const in vec3 V, const in vec3 P, const in mat3 mInv, const in vec3 rectCoords[ 4 ] ) {
+	vec3 v1 = rectCoords[ 1 ] - rectCoords[ 0 ];
+	vec3 v2 = rectCoords[ 3 ] - rectCoords[ 0 ];
+	vec3 lightNormal = cross( v1, v2 );
+	if( dot( lightNormal, P - rectCoords[ 0 ] ) < 0.0 ) return vec3( 0.0 );
+	vec3 T1, T2;
+	T1 = normalize( V - N * dot( V, N ) );
+	T2 = - cross( N, T1 );
+	mat3 mat = mInv * transposeMat3( mat3( T1, T2, N ) );
+	vec3 coords[ 4 ];
+	coords[ 0 ] = mat * ( rectCoords[ 0 ] - P );
+	coords[ 1 ] = mat * ( rectCoords[ 1 ] - P );
+	coords[ 2 ] = mat * ( rectCoords[ 2 ] - P );
+	coords[ 3 ] = mat * ( rectCoords[ 3 ] - P );
+	coords[ 0 ] = normalize( coords[ 0 ] );
+	coords[ 1 ] = normalize( coords[ 1 ] );
+	coords[ 2 ] = normalize( coords[ 2 ] );
+	coords[ 3 ] = normalize( coords[ 3 ] );
+	vec3 vectorFormFactor = vec3( 0.0 );
+	vectorFormFactor += LTC_EdgeVectorFormFactor( coords[ 0 ], coords[ 1 ] );
+	vectorFormFactor += LTC_EdgeVectorFormFactor( coords[ 1 ], coords[ 2 ] );
+	vectorFormFactor += LTC_EdgeVectorFormFactor( coords[ 2 ], coords[ 3 ] );
+	vectorFormFactor += LTC_EdgeVectorFormFactor( coords[ 3 ], coords[ 0 ] );
+	float result = LTC_ClippedSphereFormFactor( vectorFormFactor );
+	return vec3( result );
+}
+#if defined( USE_SHEEN )
+float D_Charlie( float roughness, float dotNH ) {
+	float alpha = pow2( roughness );
+	float invAlpha = 1.0 / alpha;
+	float cos2h = dotNH * dotNH;
+	float sin2h = max( 1.0 - cos2h, 0.0078125 );
+	return ( 2.0 + invAlpha ) * pow( sin2h, invAlpha * 0.5 ) / ( 2.0 * PI );
+}
+float V_Neubelt( float dotNV, float dotNL ) {
+	return saturate( 1.0 / ( 4.0 * ( dotNL + dotNV - dotNL * dotNV ) ) );
+}
+vec3 BRDF_Sheen( const in vec3 lightDir, const in vec3 viewDir, const in vec3 normal, vec3 sheenColor, const in float sheenRoughness ) {
+	vec3 halfDir = normalize( lightDir + viewDir );
+	float dotNL = saturate( dot( normal, lightDir ) );
+	float dotNV = saturate( dot( normal, viewDir ) );
+	float dotNH = saturate( dot( normal, halfDir ) );
+	float D = D_Charlie( sheenRoughness, dotNH );
+	float V = V_Neubelt( dotNV, dotNL );
+	return sheenColor * ( D * V );
+}
+#endif
+float IBLSheenBRDF( const in vec3 normal, const in vec3 viewDir, const in float roughness ) {
+	float dotNV = saturate( dot( normal, viewDir ) );
+	float r2 = roughness * roughness;
+	float a = roughness < 0.25 ? -339.2 * r2 + 161.4 * roughness - 25.9 : -8.48 * r2 + 14.3 * roughness - 9.95;
+	float b = roughness < 0.25 ? 44.0 * r2 - 23.7 * roughness + 3.26 : 1.97 * r2 - 3.27 * roughness + 0.72;
+	float DG = exp( a * dotNV + b ) + ( roughness < 0.25 ? 0.0 : 0.1 * ( roughness - 0.25 ) );
+	return saturate( DG * RECIPROCAL_PI );
+}
+vec2 DFGApprox( const in vec3 normal, const in vec3 viewDir, const in float roughness ) {
+	float dotNV = saturate( dot( normal, viewDir ) );
+	const vec4 c0 = vec4( - 1, - 0.0275, - 0.572, 0.022 );
+	const vec4 c1 = vec4( 1, 0.0425, 1.04, - 0.04 );
+	vec4 r = roughness * c0 + c1;
+	float a004 = min( r.x * r.x, exp2( - 9.28 * dotNV ) ) * r.x + r.y;
+	vec2 fab = vec2( - 1.04, 1.04 ) * a004 + r.zw;
+	return fab;
+}
+vec3 EnvironmentBRDF( const in vec3 normal, const in vec3 viewDir, const in vec3 specularColor, const in float specularF90, const in float roughness ) {
+	vec2 fab = DFGApprox( normal, viewDir, roughness );
+	return specularColor * fab.x + specularF90 * fab.y;
+}
+#ifdef USE_IRIDESCENCE
+void computeMultiscatteringIridescence( const in vec3 normal, const in vec3 viewDir, const in vec3 specularColor, const in float specularF90, const in float iridescence, const in vec3 iridescenceF0, const in float roughness, inout vec3 singleScatter, inout vec3 multiScatter ) {
+#else
+void computeMultiscattering( const in vec3 normal, const in vec3 viewDir, const in vec3 specularColor, const in float specularF90, const in float roughness, inout vec3 singleScatter, inout vec3 multiScatter ) {
+#endif
+	vec2 fab = DFGApprox( normal, viewDir, roughness );
+	#ifdef USE_IRIDESCENCE
+		vec3 Fr = mix( specularColor, iridescenceF0, iridescence );
+	#else
+		vec3 Fr = specularColor;
+	#endif
+	vec3 FssEss = Fr * fab.x + specularF90 * fab.y;
+	float Ess = fab.x + fab.y;
+	float Ems = 1.0 - Ess;
+	vec3 Favg = Fr + ( 1.0 - Fr ) * 0.047619;	vec3 Fms = FssEss * Favg / ( 1.0 - Ems * Favg );
+	singleScatter += FssEss;
+	multiScatter += Fms * Ems;
+}
+#if NUM_RECT_AREA_LIGHTS > 0
+	void RE_Direct_RectArea_Physical( const in RectAreaLight rectAreaLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight ) {
+		vec3 normal = geometryNormal;
+		vec3 viewDir = geometryViewDir;
+		vec3 position = geometryPosition;
+		vec3 lightPos = rectAreaLight.position;
+		vec3 halfWidth = rectAreaLight.halfWidth;
+		vec3 halfHeight = rectAreaLight.halfHeight;
+		vec3 lightColor = rectAreaLight.color;
+		float roughness = material.roughness;
+		vec3 rectCoords[ 4 ];
+		rectCoords[ 0 ] = lightPos + halfWidth - halfHeight;		rectCoords[ 1 ] = lightPos - halfWidth - halfHeight;
+		rectCoords[ 2 ] = lightPos - halfWidth + halfHeight;
+		rectCoords[ 3 ] = lightPos + halfWidth + halfHeight;
+		vec2 uv = LTC_Uv( normal, viewDir, roughness );
+		vec4 t1 = texture2D( ltc_1, uv );
+		vec4 t2 = texture2D( ltc_2, uv );
+		mat3 mInv = mat3(
+			vec3( t1.x, 0, t1.y ),
+			vec3(    0, 1,    0 ),
+			vec3( t1.z, 0, t1.w )
+		);
+		vec3 fresnel = ( material.specularColor * t2.x + ( vec3( 1.0 ) - material.specularColor ) * t2.y );
+		reflectedLight.directSpecular += lightColor * fresnel * LTC_Evaluate( normal, viewDir, position, mInv, rectCoords );
+		reflectedLight.directDiffuse += lightColor * material.diffuseColor * LTC_Evaluate( normal, viewDir, position, mat3( 1.0 ), rectCoords );
+	}
+#endif
+void RE_Direct_Physical( const in IncidentLight directLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight ) {
+	float dotNL = saturate( dot( geometryNormal, directLight.direction ) );
+	vec3 irradiance = dotNL * directLight.color;
+	#ifdef USE_CLEARCOAT
+		float dotNLcc = saturate( dot( geometryClearcoatNormal, directLight.direction ) );
+		vec3 ccIrradiance = dotNLcc * directLight.color;
+		clearcoatSpecularDirect += ccIrradiance * BRDF_GGX_Clearcoat( directLight.direction, geometryViewDir, geometryClearcoatNormal, material );
+	#endif
+	#ifdef USE_SHEEN
+		sheenSpecularDirect += irradiance * BRDF_Sheen( directLight.direction, geometryViewDir, geometryNormal, material.sheenColor, material.sheenRoughness );
+	#endif
+	reflectedLight.directSpecular += irradiance * BRDF_GGX( directLight.direction, geometryViewDir, geometryNormal, material );
+	reflectedLight.directDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+}
+void RE_IndirectDiffuse_Physical( const in vec3 irradiance, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight ) {
+	reflectedLight.indirectDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+}
+void RE_IndirectSpecular_Physical( const in vec3 radiance, const in vec3 irradiance, const in vec3 clearcoatRadiance, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight) {
+	#ifdef USE_CLEARCOAT
+		clearcoatSpecularIndirect += clearcoatRadiance * EnvironmentBRDF( geometryClearcoatNormal, geometryViewDir, material.clearcoatF0, material.clearcoatF90, material.clearcoatRoughness );
+	#endif
+	#ifdef USE_SHEEN
+		sheenSpecularIndirect += irradiance * material.sheenColor * IBLSheenBRDF( geometryNormal, geometryViewDir, material.sheenRoughness );
+	#endif
+	vec3 singleScattering = vec3( 0.0 );
+	vec3 multiScattering = vec3( 0.0 );
+	vec3 cosineWeightedIrradiance = irradiance * RECIPROCAL_PI;
+	#ifdef USE_IRIDESCENCE
+		computeMultiscatteringIridescence( geometryNormal, geometryViewDir, material.specularColor, material.specularF90, material.iridescence, material.iridescenceFresnel, material.roughness, singleScattering, multiScattering );
+	#else
+		computeMultiscattering( geometryNormal, geometryViewDir, material.specularColor, material.specularF90, material.roughness, singleScattering, multiScattering );
+	#endif
+	vec3 totalScattering = singleScattering + multiScattering;
+	vec3 diffuse = material.diffuseColor * ( 1.0 - max( max( totalScattering.r, totalScattering.g ), totalScattering.b ) );
+	reflectedLight.indirectSpecular += radiance * singleScattering;
+	reflectedLight.indirectSpecular += multiScattering * cosineWeightedIrradiance;
+	reflectedLight.indirectDiffuse += diffuse * cosineWeightedIrradiance;
+}
+#define RE_Direct				RE_Direct_Physical
+#define RE_Direct_RectArea		RE_Direct_RectArea_Physical
+#define RE_IndirectDiffuse		RE_IndirectDiffuse_Physical
+#define RE_IndirectSpecular		RE_IndirectSpecular_Physical
+float computeSpecularOcclusion( const in float dotNV, const in float ambientOcclusion, const in float roughness ) {
+	return saturate( pow( dotNV + ambientOcclusion, exp2( - 16.0 * roughness - 1.0 ) ) - 1.0 + ambientOcclusion );
+}`,HM=`
+vec3 geometryPosition = - vViewPosition;
+vec3 geometryNormal = normal;
+vec3 geometryViewDir = ( isOrthographic ) ? vec3( 0, 0, 1 ) : normalize( vViewPosition );
+vec3 geometryClearcoatNormal = vec3( 0.0 );
+#ifdef USE_CLEARCOAT
+	geometryClearcoatNormal = clearcoatNormal;
+#endif
+#ifdef USE_IRIDESCENCE
+	float dotNVi = saturate( dot( normal, geometryViewDir ) );
+	if ( material.iridescenceThickness == 0.0 ) {
+		material.iridescence = 0.0;
+	} else {
+		material.iridescence = saturate( material.iridescence );
+	}
+	if ( material.iridescence > 0.0 ) {
+		material.iridescenceFresnel = evalIridescence( 1.0, material.iridescenceIOR, dotNVi, material.iridescenceThickness, material.specularColor );
+		material.iridescenceF0 = Schlick_to_F0( material.iridescenceFresnel, 1.0, dotNVi );
+	}
+#endif
+IncidentLight directLight;
+#if ( NUM_POINT_LIGHTS > 0 ) && defined( RE_Direct )
+	PointLight pointLight;
+	#if defined( USE_SHADOWMAP ) && NUM_POINT_LIGHT_SHADOWS > 0
+	PointLightShadow pointLightShadow;
+	#endif
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_POINT_LIGHTS; i ++ ) {
+		pointLight = pointLights[ i ];
+		getPointLightInfo( pointLight, geometryPosition, directLight );
+		#if defined( USE_SHADOWMAP ) && ( UNROLLED_LOOP_INDEX < NUM_POINT_LIGHT_SHADOWS )
+		pointLightShadow = pointLightShadows[ i ];
+		directLight.color *= ( directLight.visible && receiveShadow ) ? getPointShadow( pointShadowMap[ i ], pointLightShadow.shadowMapSize, pointLightShadow.shadowIntensity, pointLightShadow.shadowBias, pointLightShadow.shadowRadius, vPointShadowCoord[ i ], pointLightShadow.shadowCameraNear, pointLightShadow.shadowCameraFar ) : 1.0;
+		#endif
+		RE_Direct( directLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+	}
+	#pragma unroll_loop_end
+#endif
+#if ( NUM_SPOT_LIGHTS > 0 ) && defined( RE_Direct )
+	SpotLight spotLight;
+	vec4 spotColor;
+	vec3 spotLightCoord;
+	bool inSpotLightMap;
+	#if defined( USE_SHADOWMAP ) && NUM_SPOT_LIGHT_SHADOWS > 0
+	SpotLightShadow spotLightShadow;
+	#endif
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_SPOT_LIGHTS; i ++ ) {
+		spotLight = spotLights[ i ];
+		getSpotLightInfo( spotLight, geometryPosition, directLight );
+		#if ( UNROLLED_LOOP_INDEX < NUM_SPOT_LIGHT_SHADOWS_WITH_MAPS )
+		#define SPOT_LIGHT_MAP_INDEX UNROLLED_LOOP_INDEX
+		#elif ( UNROLLED_LOOP_INDEX < NUM_SPOT_LIGHT_SHADOWS )
+		#define SPOT_LIGHT_MAP_INDEX NUM_SPOT_LIGHT_MAPS
+		#else
+		#define SPOT_LIGHT_MAP_INDEX ( UNROLLED_LOOP_INDEX - NUM_SPOT_LIGHT_SHADOWS + NUM_SPOT_LIGHT_SHADOWS_WITH_MAPS )
+		#endif
+		#if ( SPOT_LIGHT_MAP_INDEX < NUM_SPOT_LIGHT_MAPS )
+			spotLightCoord = vSpotLightCoord[ i ].xyz / vSpotLightCoord[ i ].w;
+			inSpotLightMap = all( lessThan( abs( spotLightCoord * 2. - 1. ), vec3( 1.0 ) ) );
+			spotColor = texture2D( spotLightMap[ SPOT_LIGHT_MAP_INDEX ], spotLightCoord.xy );
+			directLight.color = inSpotLightMap ? directLight.color * spotColor.rgb : directLight.color;
+		#endif
+		#undef SPOT_LIGHT_MAP_INDEX
+		#if defined( USE_SHADOWMAP ) && ( UNROLLED_LOOP_INDEX < NUM_SPOT_LIGHT_SHADOWS )
+		spotLightShadow = spotLightShadows[ i ];
+		directLight.color *= ( directLight.visible && receiveShadow ) ? getShadow( spotShadowMap[ i ], spotLightShadow.shadowMapSize, spotLightShadow.shadowIntensity, spotLightShadow.shadowBias, spotLightShadow.shadowRadius, vSpotLightCoord[ i ] ) : 1.0;
+		#endif
+		RE_Direct( directLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+	}
+	#pragma unroll_loop_end
+#endif
+#if ( NUM_DIR_LIGHTS > 0 ) && defined( RE_Direct )
+	DirectionalLight directionalLight;
+	#if defined( USE_SHADOWMAP ) && NUM_DIR_LIGHT_SHADOWS > 0
+	DirectionalLightShadow directionalLightShadow;
+	#endif
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_DIR_LIGHTS; i ++ ) {
+		directionalLight = directionalLights[ i ];
+		getDirectionalLightInfo( directionalLight, directLight );
+		#if defined( USE_SHADOWMAP ) && ( UNROLLED_LOOP_INDEX < NUM_DIR_LIGHT_SHADOWS )
+		directionalLightShadow = directionalLightShadows[ i ];
+		directLight.color *= ( directLight.visible && receiveShadow ) ? getShadow( directionalShadowMap[ i ], directionalLightShadow.shadowMapSize, directionalLightShadow.shadowIntensity, directionalLightShadow.shadowBias, directionalLightShadow.shadowRadius, vDirectionalShadowCoord[ i ] ) : 1.0;
+		#endif
+		RE_Direct( directLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+	}
+	#pragma unroll_loop_end
+#endif
+#if ( NUM_RECT_AREA_LIGHTS > 0 ) && defined( RE_Direct_RectArea )
+	RectAreaLight rectAreaLight;
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_RECT_AREA_LIGHTS; i ++ ) {
+		rectAreaLight = rectAreaLights[ i ];
+		RE_Direct_RectArea( rectAreaLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+	}
+	#pragma unroll_loop_end
+#endif
+#if defined( RE_IndirectDiffuse )
+	vec3 iblIrradiance = vec3( 0.0 );
+	vec3 irradiance = getAmbientLightIrradiance( ambientLightColor );
+	#if defined( USE_LIGHT_PROBES )
+		irradiance += getLightProbeIrradiance( lightProbe, geometryNormal );
+	#endif
+	#if ( NUM_HEMI_LIGHTS > 0 )
+		#pragma unroll_loop_start
+		for ( int i = 0; i < NUM_HEMI_LIGHTS; i ++ ) {
+			irradiance += getHemisphereLightIrradiance( hemisphereLights[ i ], geometryNormal );
+		}
+		#pragma unroll_loop_end
+	#endif
+#endif
+#if defined( RE_IndirectSpecular )
+	vec3 radiance = vec3( 0.0 );
+	vec3 clearcoatRadiance = vec3( 0.0 );
+#endif`,GM=`#if defined( RE_IndirectDiffuse )
+	#ifdef USE_LIGHTMAP
+		vec4 lightMapTexel = texture2D( lightMap, vLightMapUv );
+		vec3 lightMapIrradiance = lightMapTexel.rgb * lightMapIntensity;
+		irradiance += lightMapIrradiance;
+	#endif
+	#if defined( USE_ENVMAP ) && defined( STANDARD ) && defined( ENVMAP_TYPE_CUBE_UV )
+		iblIrradiance += getIBLIrradiance( geometryNormal );
+	#endif
+#endif
+#if defined( USE_ENVMAP ) && defined( RE_IndirectSpecular )
+	#ifdef USE_ANISOTROPY
+		radiance += getIBLAnisotropyRadiance( geometryViewDir, geometryNormal, material.roughness, material.anisotropyB, material.anisotropy );
+	#else
+		radiance += getIBLRadiance( geometryViewDir, geometryNormal, material.roughness );
+	#endif
+	#ifdef USE_CLEARCOAT
+		clearcoatRadiance += getIBLRadiance( geometryViewDir, geometryClearcoatNormal, material.clearcoatRoughness );
+	#endif
+#endif`,WM=`#if defined( RE_IndirectDiffuse )
+	RE_IndirectDiffuse( irradiance, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+#endif
+#if defined( RE_IndirectSpecular )
+	RE_IndirectSpecular( radiance, iblIrradiance, clearcoatRadiance, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+#endif`,XM=`#if defined( USE_LOGDEPTHBUF )
+	gl_FragDepth = vIsPerspective == 0.0 ? gl_FragCoord.z : log2( vFragDepth ) * logDepthBufFC * 0.5;
+#endif`,qM=`#if defined( USE_LOGDEPTHBUF )
+	uniform float logDepthBufFC;
+	varying float vFragDepth;
+	varying float vIsPerspective;
+#endif`,YM=`#ifdef USE_LOGDEPTHBUF
+	varying float vFragDepth;
+	varying float vIsPerspective;
+#endif`,$M=`#ifdef USE_LOGDEPTHBUF
+	vFragDepth = 1.0 + gl_Position.w;
+	vIsPerspective = float( isPerspectiveMatrix( projectionMatrix ) );
+#endif`,ZM=`#ifdef USE_MAP
+	vec4 sampledDiffuseColor = texture2D( map, vMapUv );
+	#ifdef DECODE_VIDEO_TEXTURE
+		sampledDiffuseColor = sRGBTransferEOTF( sampledDiffuseColor );
+	#endif
+	diffuseColor *= sampledDiffuseColor;
+#endif`,JM=`#ifdef USE_MAP
+	uniform sampler2D map;
+#endif`,KM=`#if defined( USE_MAP ) || defined( USE_ALPHAMAP )
+	#if defined( USE_POINTS_UV )
+		vec2 uv = vUv;
+	#else
+		vec2 uv = ( uvTransform * vec3( gl_PointCoord.x, 1.0 - gl_PointCoord.y, 1 ) ).xy;
+	#endif
+#endif
+#ifdef USE_MAP
+	diffuseColor *= texture2D( map, uv );
+#endif
+#ifdef USE_ALPHAMAP
+	diffuseColor.a *= texture2D( alphaMap, uv ).g;
+#endif`,jM=`#if defined( USE_POINTS_UV )
+	varying vec2 vUv;
+#else
+	#if defined( USE_MAP ) || defined( USE_ALPHAMAP )
+		uniform mat3 uvTransform;
+	#endif
+#endif
+#ifdef USE_MAP
+	uniform sampler2D map;
+#endif
+#ifdef USE_ALPHAMAP
+	uniform sampler2D alphaMap;
+#endif`,QM=`float metalnessFactor = metalness;
+#ifdef USE_METALNESSMAP
+	vec4 texelMetalness = texture2D( metalnessMap, vMetalnessMapUv );
+	metalnessFactor *= texelMetalness.b;
+#endif`,tS=`#ifdef USE_METALNESSMAP
+	uniform sampler2D metalnessMap;
+#endif`,eS=`#ifdef USE_INSTANCING_MORPH
+	float morphTargetInfluences[ MORPHTARGETS_COUNT ];
+	float morphTargetBaseInfluence = texelFetch( morphTexture, ivec2( 0, gl_InstanceID ), 0 ).r;
+	for ( int i = 0; i < MORPHTARGETS_COUNT; i ++ ) {
+		morphTargetInfluences[i] =  texelFetch( morphTexture, ivec2( i + 1, gl_InstanceID ), 0 ).r;
+	}
+#endif`,nS=`#if defined( USE_MORPHCOLORS )
+	vColor *= morphTargetBaseInfluence;
+	for ( int i = 0; i < MORPHTARGETS_COUNT; i ++ ) {
+		#if defined( USE_COLOR_ALPHA )
+			if ( morphTargetInfluences[ i ] != 0.0 ) vColor += getMorph( gl_VertexID, i, 2 ) * morphTargetInfluences[ i ];
+		#elif defined( USE_COLOR )
+			if ( morphTargetInfluences[ i ] != 0.0 ) vColor += getMorph( gl_VertexID, i, 2 ).rgb * morphTargetInfluences[ i ];
+		#endif
+	}
+#endif`,iS=`#ifdef USE_MORPHNORMALS
+	objectNormal *= morphTargetBaseInfluence;
+	for ( int i = 0; i < MORPHTARGETS_COUNT; i ++ ) {
+		if ( morphTargetInfluences[ i ] != 0.0 ) objectNormal += getMorph( gl_VertexID, i, 1 ).xyz * morphTargetInfluences[ i ];
+	}
+#endif`,sS=`#ifdef USE_MORPHTARGETS
+	#ifndef USE_INSTANCING_MORPH
+		uniform float morphTargetBaseInfluence;
+		uniform float morphTargetInfluences[ MORPHTARGETS_COUNT ];
+	#endif
+	uniform sampler2DArray morphTargetsTexture;
+	uniform ivec2 morphTargetsTextureSize;
+	vec4 getMorph( const in int vertexIndex, const in int morphTargetIndex, const in int offset ) {
+		int texelIndex = vertexIndex * MORPHTARGETS_TEXTURE_STRIDE + offset;
+		int y = texelIndex / morphTargetsTextureSize.x;
+		int x = texelIndex - y * morphTargetsTextureSize.x;
+		ivec3 morphUV = ivec3( x, y, morphTargetIndex );
+		return texelFetch( morphTargetsTexture, morphUV, 0 );
+	}
+#endif`,rS=`#ifdef USE_MORPHTARGETS
+	transformed *= morphTargetBaseInfluence;
+	for ( int i = 0; i < MORPHTARGETS_COUNT; i ++ ) {
+		if ( morphTargetInfluences[ i ] != 0.0 ) transformed += getMorph( gl_VertexID, i, 0 ).xyz * morphTargetInfluences[ i ];
+	}
+#endif`,oS=`float faceDirection = gl_FrontFacing ? 1.0 : - 1.0;
+#ifdef FLAT_SHADED
+	vec3 fdx = dFdx( vViewPosition );
+	vec3 fdy = dFdy( vViewPosition );
+	vec3 normal = normalize( cross( fdx, fdy ) );
+#else
+	vec3 normal = normalize( vNormal );
+	#ifdef DOUBLE_SIDED
+		normal *= faceDirection;
+	#endif
+#endif
+#if defined( USE_NORMALMAP_TANGENTSPACE ) || defined( USE_CLEARCOAT_NORMALMAP ) || defined( USE_ANISOTROPY )
+	#ifdef USE_TANGENT
+		mat3 tbn = mat3( normalize( vTangent ), normalize( vBitangent ), normal );
+	#else
+		mat3 tbn = getTangentFrame( - vViewPosition, normal,
+		#if defined( USE_NORMALMAP )
+			vNormalMapUv
+		#elif defined( USE_CLEARCOAT_NORMALMAP )
+			vClearcoatNormalMapUv
+		#else
+			vUv
+		#endif
+		);
+	#endif
+	#if defined( DOUBLE_SIDED ) && ! defined( FLAT_SHADED )
+		tbn[0] *= faceDirection;
+		tbn[1] *= faceDirection;
+	#endif
+#endif
+#ifdef USE_CLEARCOAT_NORMALMAP
+	#ifdef USE_TANGENT
+		mat3 tbn2 = mat3( normalize( vTangent ), normalize( vBitangent ), normal );
+	#else
+		mat3 tbn2 = getTangentFrame( - vViewPosition, normal, vClearcoatNormalMapUv );
+	#endif
+	#if defined( DOUBLE_SIDED ) && ! defined( FLAT_SHADED )
+		tbn2[0] *= faceDirection;
+		tbn2[1] *= faceDirection;
+	#endif
+#endif
+vec3 nonPerturbedNormal = normal;`,aS=`#ifdef USE_NORMALMAP_OBJECTSPACE
+	normal = texture2D( normalMap, vNormalMapUv ).xyz * 2.0 - 1.0;
+	#ifdef FLIP_SIDED
+		normal = - normal;
+	#endif
+	#ifdef DOUBLE_SIDED
+		normal = normal * faceDirection;
+	#endif
+	normal = normalize( normalMatrix * normal );
+#elif defined( USE_NORMALMAP_TANGENTSPACE )
+	vec3 mapN = texture2D( normalMap, vNormalMapUv ).xyz * 2.0 - 1.0;
+	mapN.xy *= normalScale;
+	normal = normalize( tbn * mapN );
+#elif defined( USE_BUMPMAP )
+	normal = perturbNormalArb( - vViewPosition, normal, dHdxy_fwd(), faceDirection );
+#endif`,lS=`#ifndef FLAT_SHADED
+	varying vec3 vNormal;
+	#ifdef USE_TANGENT
+		varying vec3 vTangent;
+		varying vec3 vBitangent;
+	#endif
+#endif`,cS=`#ifndef FLAT_SHADED
+	varying vec3 vNormal;
+	#ifdef USE_TANGENT
+		varying vec3 vTangent;
+		varying vec3 vBitangent;
+	#endif
+#endif`,hS=`#ifndef FLAT_SHADED
+	vNormal = normalize( transformedNormal );
+	#ifdef USE_TANGENT
+		vTangent = normalize( transformedTangent );
+		vBitangent = normalize( cross( vNormal, vTangent ) * tangent.w );
+	#endif
+#endif`,uS=`#ifdef USE_NORMALMAP
+	uniform sampler2D normalMap;
+	uniform vec2 normalScale;
+#endif
+#ifdef USE_NORMALMAP_OBJECTSPACE
+	uniform mat3 normalMatrix;
+#endif
+#if ! defined ( USE_TANGENT ) && ( defined ( USE_NORMALMAP_TANGENTSPACE ) || defined ( USE_CLEARCOAT_NORMALMAP ) || defined( USE_ANISOTROPY ) )
+	mat3 getTangentFrame( vec3 eye_pos, vec3 surf_norm, vec2 uv ) {
+		vec3 q0 = dFdx( eye_pos.xyz );
+		vec3 q1 = dFdy( eye_pos.xyz );
+		vec2 st0 = dFdx( uv.st );
+		vec2 st1 = dFdy( uv.st );
+		vec3 N = surf_norm;
+		vec3 q1perp = cross( q1, N );
+		vec3 q0perp = cross( N, q0 );
+		vec3 T = q1perp * st0.x + q0perp * st1.x;
+		vec3 B = q1perp * st0.y + q0perp * st1.y;
+		float det = max( dot( T, T ), dot( B, B ) );
+		float scale = ( det == 0.0 ) ? 0.0 : inversesqrt( det );
+		return mat3( T * scale, B * scale, N );
+	}
+#endif`,dS=`#ifdef USE_CLEARCOAT
+	vec3 clearcoatNormal = nonPerturbedNormal;
+#endif`,fS=`#ifdef USE_CLEARCOAT_NORMALMAP
+	vec3 clearcoatMapN = texture2D( clearcoatNormalMap, vClearcoatNormalMapUv ).xyz * 2.0 - 1.0;
+	clearcoatMapN.xy *= clearcoatNormalScale;
+	clearcoatNormal = normalize( tbn2 * clearcoatMapN );
+#endif`,pS=`#ifdef USE_CLEARCOATMAP
+	uniform sampler2D clearcoatMap;
+#endif
+#ifdef USE_CLEARCOAT_NORMALMAP
+	uniform sampler2D clearcoatNormalMap;
+	uniform vec2 clearcoatNormalScale;
+#endif
+#ifdef USE_CLEARCOAT_ROUGHNESSMAP
+	uniform sampler2D clearcoatRoughnessMap;
+#endif`,mS=`#ifdef USE_IRIDESCENCEMAP
+	uniform sampler2D iridescenceMap;
+#endif
+#ifdef USE_IRIDESCENCE_THICKNESSMAP
+	uniform sampler2D iridescenceThicknessMap;
+#endif`,gS=`#ifdef OPAQUE
+diffuseColor.a = 1.0;
+#endif
+#ifdef USE_TRANSMISSION
+diffuseColor.a *= material.transmissionAlpha;
+#endif
+gl_FragColor = vec4( outgoingLight, diffuseColor.a );`,_S=`vec3 packNormalToRGB( const in vec3 normal ) {
+	return normalize( normal ) * 0.5 + 0.5;
+}
+vec3 unpackRGBToNormal( const in vec3 rgb ) {
+	return 2.0 * rgb.xyz - 1.0;
+}
+const float PackUpscale = 256. / 255.;const float UnpackDownscale = 255. / 256.;const float ShiftRight8 = 1. / 256.;
+const float Inv255 = 1. / 255.;
+const vec4 PackFactors = vec4( 1.0, 256.0, 256.0 * 256.0, 256.0 * 256.0 * 256.0 );
+const vec2 UnpackFactors2 = vec2( UnpackDownscale, 1.0 / PackFactors.g );
+const vec3 UnpackFactors3 = vec3( UnpackDownscale / PackFactors.rg, 1.0 / PackFactors.b );
+const vec4 UnpackFactors4 = vec4( UnpackDownscale / PackFactors.rgb, 1.0 / PackFactors.a );
+vec4 packDepthToRGBA( const in float v ) {
+	if( v <= 0.0 )
+		return vec4( 0., 0., 0., 0. );
+	if( v >= 1.0 )
+		return vec4( 1., 1., 1., 1. );
+	float vuf;
+	float af = modf( v * PackFactors.a, vuf );
+	float bf = modf( vuf * ShiftRight8, vuf );
+	float gf = modf( vuf * ShiftRight8, vuf );
+	return vec4( vuf * Inv255, gf * PackUpscale, bf * PackUpscale, af );
+}
+vec3 packDepthToRGB( const in float v ) {
+	if( v <= 0.0 )
+		return vec3( 0., 0., 0. );
+	if( v >= 1.0 )
+		return vec3( 1., 1., 1. );
+	float vuf;
+	float bf = modf( v * PackFactors.b, vuf );
+	float gf = modf( vuf * ShiftRight8, vuf );
+	return vec3( vuf * Inv255, gf * PackUpscale, bf );
+}
+vec2 packDepthToRG( const in float v ) {
+	if( v <= 0.0 )
+		return vec2( 0., 0. );
+	if( v >= 1.0 )
+		return vec2( 1., 1. );
+	float vuf;
+	float gf = modf( v * 256., vuf );
+	return vec2( vuf * Inv255, gf );
+}
+float unpackRGBAToDepth( const in vec4 v ) {
+	return dot( v, UnpackFactors4 );
+}
+float unpackRGBToDepth( const in vec3 v ) {
+	return dot( v, UnpackFactors3 );
+}
+float unpackRGToDepth( const in vec2 v ) {
+	return v.r * UnpackFactors2.r + v.g * UnpackFactors2.g;
+}
+vec4 pack2HalfToRGBA( const in vec2 v ) {
+	vec4 r = vec4( v.x, fract( v.x * 255.0 ), v.y, fract( v.y * 255.0 ) );
+	return vec4( r.x - r.y / 255.0, r.y, r.z - r.w / 255.0, r.w );
+}
+vec2 unpackRGBATo2Half( const in vec4 v ) {
+	return vec2( v.x + ( v.y / 255.0 ), v.z + ( v.w / 255.0 ) );
+}
+float viewZToOrthographicDepth( const in float viewZ, const in float near, const in float far ) {
+	return ( viewZ + near ) / ( near - far );
+}
+float orthographicDepthToViewZ( const in float depth, const in float near, const in float far ) {
+	return depth * ( near - far ) - near;
+}
+float viewZToPerspectiveDepth( const in float viewZ, const in float near, const in float far ) {
+	return ( ( near + viewZ ) * far ) / ( ( far - near ) * viewZ );
+}
+float perspectiveDepthToViewZ( const in float depth, const in float near, const in float far ) {
+	return ( near * far ) / ( ( far - near ) * depth - far );
+}`,xS=`#ifdef PREMULTIPLIED_ALPHA
+	gl_FragColor.rgb *= gl_FragColor.a;
+#endif`,yS=`vec4 mvPosition = vec4( transformed, 1.0 );
+#ifdef USE_BATCHING
+	mvPosition = batchingMatrix * mvPosition;
+#endif
+#ifdef USE_INSTANCING
+	mvPosition = instanceMatrix * mvPosition;
+#endif
+mvPosition = modelViewMatrix * mvPosition;
+gl_Position = projectionMatrix * mvPosition;`,vS=`#ifdef DITHERING
+	gl_FragColor.rgb = dithering( gl_FragColor.rgb );
+#endif`,MS=`#ifdef DITHERING
+	vec3 dithering( vec3 color ) {
+		float grid_position = rand( gl_FragCoord.xy );
+		vec3 dither_shift_RGB = vec3( 0.25 / 255.0, -0.25 / 255.0, 0.25 / 255.0 );
+		dither_shift_RGB = mix( 2.0 * dither_shift_RGB, -2.0 * dither_shift_RGB, grid_position );
+		return color + dither_shift_RGB;
+	}
+#endif`,SS=`float roughnessFactor = roughness;
+#ifdef USE_ROUGHNESSMAP
+	vec4 texelRoughness = texture2D( roughnessMap, vRoughnessMapUv );
+	roughnessFactor *= texelRoughness.g;
+#endif`,bS=`#ifdef USE_ROUGHNESSMAP
+	uniform sampler2D roughnessMap;
+#endif`,wS=`#if NUM_SPOT_LIGHT_COORDS > 0
+	varying vec4 vSpotLightCoord[ NUM_SPOT_LIGHT_COORDS ];
+#endif
+#if NUM_SPOT_LIGHT_MAPS > 0
+	uniform sampler2D spotLightMap[ NUM_SPOT_LIGHT_MAPS ];
+#endif
+#ifdef USE_SHADOWMAP
+	#if NUM_DIR_LIGHT_SHADOWS > 0
+		uniform sampler2D directionalShadowMap[ NUM_DIR_LIGHT_SHADOWS ];
+		varying vec4 vDirectionalShadowCoord[ NUM_DIR_LIGHT_SHADOWS ];
+		struct DirectionalLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+		};
+		uniform DirectionalLightShadow directionalLightShadows[ NUM_DIR_LIGHT_SHADOWS ];
+	#endif
+	#if NUM_SPOT_LIGHT_SHADOWS > 0
+		uniform sampler2D spotShadowMap[ NUM_SPOT_LIGHT_SHADOWS ];
+		struct SpotLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+		};
+		uniform SpotLightShadow spotLightShadows[ NUM_SPOT_LIGHT_SHADOWS ];
+	#endif
+	#if NUM_POINT_LIGHT_SHADOWS > 0
+		uniform sampler2D pointShadowMap[ NUM_POINT_LIGHT_SHADOWS ];
+		varying vec4 vPointShadowCoord[ NUM_POINT_LIGHT_SHADOWS ];
+		struct PointLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+			float shadowCameraNear;
+			float shadowCameraFar;
+		};
+		uniform PointLightShadow pointLightShadows[ NUM_POINT_LIGHT_SHADOWS ];
+	#endif
+	float texture2DCompare( sampler2D depths, vec2 uv, float compare ) {
+		return step( compare, unpackRGBAToDepth( texture2D( depths, uv ) ) );
+	}
+	vec2 texture2DDistribution( sampler2D shadow, vec2 uv ) {
+		return unpackRGBATo2Half( texture2D( shadow, uv ) );
+	}
+	float VSMShadow (sampler2D shadow, vec2 uv, float compare ){
+		float occlusion = 1.0;
+		vec2 distribution = texture2DDistribution( shadow, uv );
+		float hard_shadow = step( compare , distribution.x );
+		if (hard_shadow != 1.0 ) {
+			float distance = compare - distribution.x ;
+			float variance = max( 0.00000, distribution.y * distribution.y );
+			float softness_probability = variance / (variance + distance * distance );			softness_probability = clamp( ( softness_probability - 0.3 ) / ( 0.95 - 0.3 ), 0.0, 1.0 );			occlusion = clamp( max( hard_shadow, softness_probability ), 0.0, 1.0 );
+		}
+		return occlusion;
+	}
+	float getShadow( sampler2D shadowMap, vec2 shadowMapSize, float shadowIntensity, float shadowBias, float shadowRadius, vec4 shadowCoord ) {
+		float shadow = 1.0;
+		shadowCoord.xyz /= shadowCoord.w;
+		shadowCoord.z += shadowBias;
+		bool inFrustum = shadowCoord.x >= 0.0 && shadowCoord.x <= 1.0 && shadowCoord.y >= 0.0 && shadowCoord.y <= 1.0;
+		bool frustumTest = inFrustum && shadowCoord.z <= 1.0;
+		if ( frustumTest ) {
+		#if defined( SHADOWMAP_TYPE_PCF )
+			vec2 texelSize = vec2( 1.0 ) / shadowMapSize;
+			float dx0 = - texelSize.x * shadowRadius;
+			float dy0 = - texelSize.y * shadowRadius;
+			float dx1 = + texelSize.x * shadowRadius;
+			float dy1 = + texelSize.y * shadowRadius;
+			float dx2 = dx0 / 2.0;
+			float dy2 = dy0 / 2.0;
+			float dx3 = dx1 / 2.0;
+			float dy3 = dy1 / 2.0;
+			shadow = (
+				texture2DCompare( shadowMap, shadowCoord.xy + vec2( dx0, dy0 ), shadowCoord.z ) +
+				texture2DCompare( shadowMap, shadowCoord.xy + vec2( 0.0, dy0 ), shadowCoord.z ) +
+				texture2DCompare( shadowMap, shadowCoord.xy + vec2( dx1, dy0 ), shadowCoord.z ) +
+				texture2DCompare( shadowMap, shadowCoord.xy + vec2( dx2, dy2 ), shadowCoord.z ) +
+				texture2DCompare( shadowMap, shadowCoord.xy + vec2( 0.0, dy2 ), shadowCoord.z ) +
+				texture2DCompare( shadowMap, shadowCoord.xy + vec2( dx3, dy2 ), shadowCoord.z ) +
+				texture2DCompare( shadowMap, shadowCoord.xy + vec2( dx0, 0.0 ), shadowCoord.z ) +
+				texture2DCompare( shadowMap, shadowCoord.xy + vec2( dx2, 0.0 ), shadowCoord.z ) +
+				texture2DCompare( shadowMap, shadowCoord.xy, shadowCoord.z ) +
+				texture2DCompare( shadowMap, shadowCoord.xy + vec2( dx3, 0.0 ), shadowCoord.z ) +
+				texture2DCompare( shadowMap, shadowCoord.xy + vec2( dx1, 0.0 ), shadowCoord.z ) +
+				texture2DCompare( shadowMap, shadowCoord.xy + vec2( dx2, dy3 ), shadowCoord.z ) +
+				texture2DCompare( shadowMap, shadowCoord.xy + vec2( 0.0, dy3 ), shadowCoord.z ) +
+				texture2DCompare( shadowMap, shadowCoord.xy + vec2( dx3, dy3 ), shadowCoord.z ) +
+				texture2DCompare( shadowMap, shadowCoord.xy + vec2( dx0, dy1 ), shadowCoord.z ) +
+				texture2DCompare( shadowMap, shadowCoord.xy + vec2( 0.0, dy1 ), shadowCoord.z ) +
+				texture2DCompare( shadowMap, shadowCoord.xy + vec2( dx1, dy1 ), shadowCoord.z )
+			) * ( 1.0 / 17.0 );
+		#elif defined( SHADOWMAP_TYPE_PCF_SOFT )
+			vec2 texelSize = vec2( 1.0 ) / shadowMapSize;
+			float dx = texelSize.x;
+			float dy = texelSize.y;
+			vec2 uv = shadowCoord.xy;
+			vec2 f = fract( uv * shadowMapSize + 0.5 );
+			uv -= f * texelSize;
+			shadow = (
+				texture2DCompare( shadowMap, uv, shadowCoord.z ) +
+				texture2DCompare( shadowMap, uv + vec2( dx, 0.0 ), shadowCoord.z ) +
+				texture2DCompare( shadowMap, uv + vec2( 0.0, dy ), shadowCoord.z ) +
+				texture2DCompare( shadowMap, uv + texelSize, shadowCoord.z ) +
+				mix( texture2DCompare( shadowMap, uv + vec2( -dx, 0.0 ), shadowCoord.z ),
+					 texture2DCompare( shadowMap, uv + vec2( 2.0 * dx, 0.0 ), shadowCoord.z ),
+					 f.x ) +
+				mix( texture2DCompare( shadowMap, uv + vec2( -dx, dy ), shadowCoord.z ),
+					 texture2DCompare( shadowMap, uv + vec2( 2.0 * dx, dy ), shadowCoord.z ),
+					 f.x ) +
+				mix( texture2DCompare( shadowMap, uv + vec2( 0.0, -dy ), shadowCoord.z ),
+					 texture2DCompare( shadowMap, uv + vec2( 0.0, 2.0 * dy ), shadowCoord.z ),
+					 f.y ) +
+				mix( texture2DCompare( shadowMap, uv + vec2( dx, -dy ), shadowCoord.z ),
+					 texture2DCompare( shadowMap, uv + vec2( dx, 2.0 * dy ), shadowCoord.z ),
+					 f.y ) +
+				mix( mix( texture2DCompare( shadowMap, uv + vec2( -dx, -dy ), shadowCoord.z ),
+						  texture2DCompare( shadowMap, uv + vec2( 2.0 * dx, -dy ), shadowCoord.z ),
+						  f.x ),
+					 mix( texture2DCompare( shadowMap, uv + vec2( -dx, 2.0 * dy ), shadowCoord.z ),
+						  texture2DCompare( shadowMap, uv + vec2( 2.0 * dx, 2.0 * dy ), shadowCoord.z ),
+						  f.x ),
+					 f.y )
+			) * ( 1.0 / 9.0 );
+		#elif defined( SHADOWMAP_TYPE_VSM )
+			shadow = VSMShadow( shadowMap, shadowCoord.xy, shadowCoord.z );
+		#else
+			shadow = texture2DCompare( shadowMap, shadowCoord.xy, shadowCoord.z );
+		#endif
+		}
+		return mix( 1.0, shadow, shadowIntensity );
+	}
+	vec2 cubeToUV( vec3 v, float texelSizeY ) {
+		vec3 absV = abs( v );
+		float scaleToCube = 1.0 / max( absV.x, max( absV.y, absV.z ) );
+		absV *= scaleToCube;
+		v *= scaleToCube * ( 1.0 - 2.0 * texelSizeY );
+		vec2 planar = v.xy;
+		float almostATexel = 1.5 * texelSizeY;
+		float almostOne = 1.0 - almostATexel;
+		if ( absV.z >= almostOne ) {
+			if ( v.z > 0.0 )
+				planar.x = 4.0 - v.x;
+		} else if ( absV.x >= almostOne ) {
+			float signX = sign( v.x );
+			planar.x = v.z * signX + 2.0 * signX;
+		} else if ( absV.y >= almostOne ) {
+			float signY = sign( v.y );
+			planar.x = v.x + 2.0 * signY + 2.0;
+			planar.y = v.z * signY - 2.0;
+		}
+		return vec2( 0.125, 0.25 ) * planar + vec2( 0.375, 0.75 );
+	}
+	float getPointShadow( sampler2D shadowMap, vec2 shadowMapSize, float shadowIntensity, float shadowBias, float shadowRadius, vec4 shadowCoord, float shadowCameraNear, float shadowCameraFar ) {
+		float shadow = 1.0;
+		vec3 lightToPosition = shadowCoord.xyz;
+		
+		float lightToPositionLength = length( lightToPosition );
+		if ( lightToPositionLength - shadowCameraFar <= 0.0 && lightToPositionLength - shadowCameraNear >= 0.0 ) {
+			float dp = ( lightToPositionLength - shadowCameraNear ) / ( shadowCameraFar - shadowCameraNear );			dp += shadowBias;
+			vec3 bd3D = normalize( lightToPosition );
+			vec2 texelSize = vec2( 1.0 ) / ( shadowMapSize * vec2( 4.0, 2.0 ) );
+			#if defined( SHADOWMAP_TYPE_PCF ) || defined( SHADOWMAP_TYPE_PCF_SOFT ) || defined( SHADOWMAP_TYPE_VSM )
+				vec2 offset = vec2( - 1, 1 ) * shadowRadius * texelSize.y;
+				shadow = (
+					texture2DCompare( shadowMap, cubeToUV( bd3D + offset.xyy, texelSize.y ), dp ) +
+					texture2DCompare( shadowMap, cubeToUV( bd3D + offset.yyy, texelSize.y ), dp ) +
+					texture2DCompare( shadowMap, cubeToUV( bd3D + offset.xyx, texelSize.y ), dp ) +
+					texture2DCompare( shadowMap, cubeToUV( bd3D + offset.yyx, texelSize.y ), dp ) +
+					texture2DCompare( shadowMap, cubeToUV( bd3D, texelSize.y ), dp ) +
+					texture2DCompare( shadowMap, cubeToUV( bd3D + offset.xxy, texelSize.y ), dp ) +
+					texture2DCompare( shadowMap, cubeToUV( bd3D + offset.yxy, texelSize.y ), dp ) +
+					texture2DCompare( shadowMap, cubeToUV( bd3D + offset.xxx, texelSize.y ), dp ) +
+					texture2DCompare( shadowMap, cubeToUV( bd3D + offset.yxx, texelSize.y ), dp )
+				) * ( 1.0 / 9.0 );
+			#else
+				shadow = texture2DCompare( shadowMap, cubeToUV( bd3D, texelSize.y ), dp );
+			#endif
+		}
+		return mix( 1.0, shadow, shadowIntensity );
+	}
+#endif`,ES=`#if NUM_SPOT_LIGHT_COORDS > 0
+	uniform mat4 spotLightMatrix[ NUM_SPOT_LIGHT_COORDS ];
+	varying vec4 vSpotLightCoord[ NUM_SPOT_LIGHT_COORDS ];
+#endif
+#ifdef USE_SHADOWMAP
+	#if NUM_DIR_LIGHT_SHADOWS > 0
+		uniform mat4 directionalShadowMatrix[ NUM_DIR_LIGHT_SHADOWS ];
+		varying vec4 vDirectionalShadowCoord[ NUM_DIR_LIGHT_SHADOWS ];
+		struct DirectionalLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+		};
+		uniform DirectionalLightShadow directionalLightShadows[ NUM_DIR_LIGHT_SHADOWS ];
+	#endif
+	#if NUM_SPOT_LIGHT_SHADOWS > 0
+		struct SpotLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+		};
+		uniform SpotLightShadow spotLightShadows[ NUM_SPOT_LIGHT_SHADOWS ];
+	#endif
+	#if NUM_POINT_LIGHT_SHADOWS > 0
+		uniform mat4 pointShadowMatrix[ NUM_POINT_LIGHT_SHADOWS ];
+		varying vec4 vPointShadowCoord[ NUM_POINT_LIGHT_SHADOWS ];
+		struct PointLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+			float shadowCameraNear;
+			float shadowCameraFar;
+		};
+		uniform PointLightShadow pointLightShadows[ NUM_POINT_LIGHT_SHADOWS ];
+	#endif
+#endif`,TS=`#if ( defined( USE_SHADOWMAP ) && ( NUM_DIR_LIGHT_SHADOWS > 0 || NUM_POINT_LIGHT_SHADOWS > 0 ) ) || ( NUM_SPOT_LIGHT_COORDS > 0 )
+	vec3 shadowWorldNormal = inverseTransformDirection( transformedNormal, viewMatrix );
+	vec4 shadowWorldPosition;
+#endif
+#if defined( USE_SHADOWMAP )
+	#if NUM_DIR_LIGHT_SHADOWS > 0
+		#pragma unroll_loop_start
+		for ( int i = 0; i < NUM_DIR_LIGHT_SHADOWS; i ++ ) {
+			shadowWorldPosition = worldPosition + vec4( shadowWorldNormal * directionalLightShadows[ i ].shadowNormalBias, 0 );
+			vDirectionalShadowCoord[ i ] = directionalShadowMatrix[ i ] * shadowWorldPosition;
+		}
+		#pragma unroll_loop_end
+	#endif
+	#if NUM_POINT_LIGHT_SHADOWS > 0
+		#pragma unroll_loop_start
+		for ( int i = 0; i < NUM_POINT_LIGHT_SHADOWS; i ++ ) {
+			shadowWorldPosition = worldPosition + vec4( shadowWorldNormal * pointLightShadows[ i ].shadowNormalBias, 0 );
+			vPointShadowCoord[ i ] = pointShadowMatrix[ i ] * shadowWorldPosition;
+		}
+		#pragma unroll_loop_end
+	#endif
+#endif
+#if NUM_SPOT_LIGHT_COORDS > 0
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_SPOT_LIGHT_COORDS; i ++ ) {
+		shadowWorldPosition = worldPosition;
+		#if ( defined( USE_SHADOWMAP ) && UNROLLED_LOOP_INDEX < NUM_SPOT_LIGHT_SHADOWS )
+			shadowWorldPosition.xyz += shadowWorldNormal * spotLightShadows[ i ].shadowNormalBias;
+		#endif
+		vSpotLightCoord[ i ] = spotLightMatrix[ i ] * shadowWorldPosition;
+	}
+	#pragma unroll_loop_end
+#endif`,AS=`float getShadowMask() {
+	float shadow = 1.0;
+	#ifdef USE_SHADOWMAP
+	#if NUM_DIR_LIGHT_SHADOWS > 0
+	DirectionalLightShadow directionalLight;
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_DIR_LIGHT_SHADOWS; i ++ ) {
+		directionalLight = directionalLightShadows[ i ];
+		shadow *= receiveShadow ? getShadow( directionalShadowMap[ i ], directionalLight.shadowMapSize, directionalLight.shadowIntensity, directionalLight.shadowBias, directionalLight.shadowRadius, vDirectionalShadowCoord[ i ] ) : 1.0;
+	}
+	#pragma unroll_loop_end
+	#endif
+	#if NUM_SPOT_LIGHT_SHADOWS > 0
+	SpotLightShadow spotLight;
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_SPOT_LIGHT_SHADOWS; i ++ ) {
+		spotLight = spotLightShadows[ i ];
+		shadow *= receiveShadow ? getShadow( spotShadowMap[ i ], spotLight.shadowMapSize, spotLight.shadowIntensity, spotLight.shadowBias, spotLight.shadowRadius, vSpotLightCoord[ i ] ) : 1.0;
+	}
+	#pragma unroll_loop_end
+	#endif
+	#if NUM_POINT_LIGHT_SHADOWS > 0
+	PointLightShadow pointLight;
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_POINT_LIGHT_SHADOWS; i ++ ) {
+		pointLight = pointLightShadows[ i ];
+		shadow *= receiveShadow ? getPointShadow( pointShadowMap[ i ], pointLight.shadowMapSize, pointLight.shadowIntensity, pointLight.shadowBias, pointLight.shadowRadius, vPointShadowCoord[ i ], pointLight.shadowCameraNear, pointLight.shadowCameraFar ) : 1.0;
+	}
+	#pragma unroll_loop_end
+	#endif
+	#endif
+	return shadow;
+}`,CS=`#ifdef USE_SKINNING
+	mat4 boneMatX = getBoneMatrix( skinIndex.x );
+	mat4 boneMatY = getBoneMatrix( skinIndex.y );
+	mat4 boneMatZ = getBoneMatrix( skinIndex.z );
+	mat4 boneMatW = getBoneMatrix( skinIndex.w );
+#endif`,RS=`#ifdef USE_SKINNING
+	uniform mat4 bindMatrix;
+	uniform mat4 bindMatrixInverse;
+	uniform highp sampler2D boneTexture;
+	mat4 getBoneMatrix( const in float i ) {
+		int size = textureSize( boneTexture, 0 ).x;
+		int j = int( i ) * 4;
+		int x = j % size;
+		int y = j / size;
+		vec4 v1 = texelFetch( boneTexture, ivec2( x, y ), 0 );
+		vec4 v2 = texelFetch( boneTexture, ivec2( x + 1, y ), 0 );
+		vec4 v3 = texelFetch( boneTexture, ivec2( x + 2, y ), 0 );
+		vec4 v4 = texelFetch( boneTexture, ivec2( x + 3, y ), 0 );
+		return mat4( v1, v2, v3, v4 );
+	}
+#endif`,PS=`#ifdef USE_SKINNING
+	vec4 skinVertex = bindMatrix * vec4( transformed, 1.0 );
+	vec4 skinned = vec4( 0.0 );
+	skinned += boneMatX * skinVertex * skinWeight.x;
+	skinned += boneMatY * skinVertex * skinWeight.y;
+	skinned += boneMatZ * skinVertex * skinWeight.z;
+	skinned += boneMatW * skinVertex * skinWeight.w;
+	transformed = ( bindMatrixInverse * skinned ).xyz;
+#endif`,IS=`#ifdef USE_SKINNING
+	mat4 skinMatrix = mat4( 0.0 );
+	skinMatrix += skinWeight.x * boneMatX;
+	skinMatrix += skinWeight.y * boneMatY;
+	skinMatrix += skinWeight.z * boneMatZ;
+	skinMatrix += skinWeight.w * boneMatW;
+	skinMatrix = bindMatrixInverse * skinMatrix * bindMatrix;
+	objectNormal = vec4( skinMatrix * vec4( objectNormal, 0.0 ) ).xyz;
+	#ifdef USE_TANGENT
+		objectTangent = vec4( skinMatrix * vec4( objectTangent, 0.0 ) ).xyz;
+	#endif
+#endif`,LS=`float specularStrength;
+#ifdef USE_SPECULARMAP
+	vec4 texelSpecular = texture2D( specularMap, vSpecularMapUv );
+	specularStrength = texelSpecular.r;
+#else
+	specularStrength = 1.0;
+#endif`,DS=`#ifdef USE_SPECULARMAP
+	uniform sampler2D specularMap;
+#endif`,US=`#if defined( TONE_MAPPING )
+	gl_FragColor.rgb = toneMapping( gl_FragColor.rgb );
+#endif`,NS=`#ifndef saturate
+#define saturate( a ) clamp( a, 0.0, 1.0 )
+#endif
+uniform float toneMappingExposure;
+vec3 LinearToneMapping( vec3 color ) {
+	return saturate( toneMappingExposure * color );
+}
+vec3 ReinhardToneMapping( vec3 color ) {
+	color *= toneMappingExposure;
+	return saturate( color / ( vec3( 1.0 ) + color ) );
+}
+vec3 CineonToneMapping( vec3 color ) {
+	color *= toneMappingExposure;
+	color = max( vec3( 0.0 ), color - 0.004 );
+	return pow( ( color * ( 6.2 * color + 0.5 ) ) / ( color * ( 6.2 * color + 1.7 ) + 0.06 ), vec3( 2.2 ) );
+}
+vec3 RRTAndODTFit( vec3 v ) {
+	vec3 a = v * ( v + 0.0245786 ) - 0.000090537;
+	vec3 b = v * ( 0.983729 * v + 0.4329510 ) + 0.238081;
+	return a / b;
+}
+vec3 ACESFilmicToneMapping( vec3 color ) {
+	const mat3 ACESInputMat = mat3(
+		vec3( 0.59719, 0.07600, 0.02840 ),		vec3( 0.35458, 0.90834, 0.13383 ),
+		vec3( 0.04823, 0.01566, 0.83777 )
+	);
+	const mat3 ACESOutputMat = mat3(
+		vec3(  1.60475, -0.10208, -0.00327 ),		vec3( -0.53108,  1.10813, -0.07276 ),
+		vec3( -0.07367, -0.00605,  1.07602 )
+	);
+	color *= toneMappingExposure / 0.6;
+	color = ACESInputMat * color;
+	color = RRTAndODTFit( color );
+	color = ACESOutputMat * color;
+	return saturate( color );
+}
+const mat3 LINEAR_REC2020_TO_LINEAR_SRGB = mat3(
+	vec3( 1.6605, - 0.1246, - 0.0182 ),
+	vec3( - 0.5876, 1.1329, - 0.1006 ),
+	vec3( - 0.0728, - 0.0083, 1.1187 )
+);
+const mat3 LINEAR_SRGB_TO_LINEAR_REC2020 = mat3(
+	vec3( 0.6274, 0.0691, 0.0164 ),
+	vec3( 0.3293, 0.9195, 0.0880 ),
+	vec3( 0.0433, 0.0113, 0.8956 )
+);
+vec3 agxDefaultContrastApprox( vec3 x ) {
+	vec3 x2 = x * x;
+	vec3 x4 = x2 * x2;
+	return + 15.5 * x4 * x2
+		- 40.14 * x4 * x
+		+ 31.96 * x4
+		- 6.868 * x2 * x
+		+ 0.4298 * x2
+		+ 0.1191 * x
+		- 0.00232;
+}
+vec3 AgXToneMapping( vec3 color ) {
+	const mat3 AgXInsetMatrix = mat3(
+		vec3( 0.856627153315983, 0.137318972929847, 0.11189821299995 ),
+		vec3( 0.0951212405381588, 0.761241990602591, 0.0767994186031903 ),
+		vec3( 0.0482516061458583, 0.101439036467562, 0.811302368396859 )
+	);
+	const mat3 AgXOutsetMatrix = mat3(
+		vec3( 1.1271005818144368, - 0.1413297634984383, - 0.14132976349843826 ),
+		vec3( - 0.11060664309660323, 1.157823702216272, - 0.11060664309660294 ),
+		vec3( - 0.016493938717834573, - 0.016493938717834257, 1.2519364065950405 )
+	);
+	const float AgxMinEv = - 12.47393;	const float AgxMaxEv = 4.026069;
+	color *= toneMappingExposure;
+	color = LINEAR_SRGB_TO_LINEAR_REC2020 * color;
+	color = AgXInsetMatrix * color;
+	color = max( color, 1e-10 );	color = log2( color );
+	color = ( color - AgxMinEv ) / ( AgxMaxEv - AgxMinEv );
+	color = clamp( color, 0.0, 1.0 );
+	color = agxDefaultContrastApprox( color );
+	color = AgXOutsetMatrix * color;
+	color = pow( max( vec3( 0.0 ), color ), vec3( 2.2 ) );
+	color = LINEAR_REC2020_TO_LINEAR_SRGB * color;
+	color = clamp( color, 0.0, 1.0 );
+	return color;
+}
+vec3 NeutralToneMapping( vec3 color ) {
+	const float StartCompression = 0.8 - 0.04;
+	const float Desaturation = 0.15;
+	color *= toneMappingExposure;
+	float x = min( color.r, min( color.g, color.b ) );
+	float offset = x < 0.08 ? x - 6.25 * x * x : 0.04;
+	color -= offset;
+	float peak = max( color.r, max( color.g, color.b ) );
+	if ( peak < StartCompression ) return color;
+	float d = 1. - StartCompression;
+	float newPeak = 1. - d * d / ( peak + d - StartCompression );
+	color *= newPeak / peak;
+	float g = 1. - 1. / ( Desaturation * ( peak - newPeak ) + 1. );
+	return mix( color, vec3( newPeak ), g );
+}
+vec3 CustomToneMapping( vec3 color ) { return color; }`,FS=`#ifdef USE_TRANSMISSION
+	material.transmission = transmission;
+	material.transmissionAlpha = 1.0;
+	material.thickness = thickness;
+	material.attenuationDistance = attenuationDistance;
+	material.attenuationColor = attenuationColor;
+	#ifdef USE_TRANSMISSIONMAP
+		material.transmission *= texture2D( transmissionMap, vTransmissionMapUv ).r;
+	#endif
+	#ifdef USE_THICKNESSMAP
+		material.thickness *= texture2D( thicknessMap, vThicknessMapUv ).g;
+	#endif
+	vec3 pos = vWorldPosition;
+	vec3 v = normalize( cameraPosition - pos );
+	vec3 n = inverseTransformDirection( normal, viewMatrix );
+	vec4 transmitted = getIBLVolumeRefraction(
+		n, v, material.roughness, material.diffuseColor, material.specularColor, material.specularF90,
+		pos, modelMatrix, viewMatrix, projectionMatrix, material.dispersion, material.ior, material.thickness,
+		material.attenuationColor, material.attenuationDistance );
+	material.transmissionAlpha = mix( material.transmissionAlpha, transmitted.a, material.transmission );
+	totalDiffuse = mix( totalDiffuse, transmitted.rgb, material.transmission );
+#endif`,OS=`#ifdef USE_TRANSMISSION
+	uniform float transmission;
+	uniform float thickness;
+	uniform float attenuationDistance;
+	uniform vec3 attenuationColor;
+	#ifdef USE_TRANSMISSIONMAP
+		uniform sampler2D transmissionMap;
+	#endif
+	#ifdef USE_THICKNESSMAP
+		uniform sampler2D thicknessMap;
+	#endif
+	uniform vec2 transmissionSamplerSize;
+	uniform sampler2D transmissionSamplerMap;
+	uniform mat4 modelMatrix;
+	uniform mat4 projectionMatrix;
+	varying vec3 vWorldPosition;
+	float w0( float a ) {
+		return ( 1.0 / 6.0 ) * ( a * ( a * ( - a + 3.0 ) - 3.0 ) + 1.0 );
+	}
+	float w1( float a ) {
+		return ( 1.0 / 6.0 ) * ( a *  a * ( 3.0 * a - 6.0 ) + 4.0 );
+	}
+	float w2( float a ){
+		return ( 1.0 / 6.0 ) * ( a * ( a * ( - 3.0 * a + 3.0 ) + 3.0 ) + 1.0 );
+	}
+	float w3( float a ) {
+		return ( 1.0 / 6.0 ) * ( a * a * a );
+	}
+	float g0( float a ) {
+		return w0( a ) + w1( a );
+	}
+	float g1( float a ) {
+		return w2( a ) + w3( a );
+	}
+	float h0( float a ) {
+		return - 1.0 + w1( a ) / ( w0( a ) + w1( a ) );
+	}
+	float h1( float a ) {
+		return 1.0 + w3( a ) / ( w2( a ) + w3( a ) );
+	}
+	vec4 bicubic( sampler2D tex, vec2 uv, vec4 texelSize, float lod ) {
+		uv = uv * texelSize.zw + 0.5;
+		vec2 iuv = floor( uv );
+		vec2 fuv = fract( uv );
+		float g0x = g0( fuv.x );
+		float g1x = g1( fuv.x );
+		float h0x = h0( fuv.x );
+		float h1x = h1( fuv.x );
+		float h0y = h0( fuv.y );
+		float h1y = h1( fuv.y );
+		vec2 p0 = ( vec2( iuv.x + h0x, iuv.y + h0y ) - 0.5 ) * texelSize.xy;
+		vec2 p1 = ( vec2( iuv.x + h1x, iuv.y + h0y ) - 0.5 ) * texelSize.xy;
+		vec2 p2 = ( vec2( iuv.x + h0x, iuv.y + h1y ) - 0.5 ) * texelSize.xy;
+		vec2 p3 = ( vec2( iuv.x + h1x, iuv.y + h1y ) - 0.5 ) * texelSize.xy;
+		return g0( fuv.y ) * ( g0x * textureLod( tex, p0, lod ) + g1x * textureLod( tex, p1, lod ) ) +
+			g1( fuv.y ) * ( g0x * textureLod( tex, p2, lod ) + g1x * textureLod( tex, p3, lod ) );
+	}
+	vec4 textureBicubic( sampler2D sampler, vec2 uv, float lod ) {
+		vec2 fLodSize = vec2( textureSize( sampler, int( lod ) ) );
+		vec2 cLodSize = vec2( textureSize( sampler, int( lod + 1.0 ) ) );
+		vec2 fLodSizeInv = 1.0 / fLodSize;
+		vec2 cLodSizeInv = 1.0 / cLodSize;
+		vec4 fSample = bicubic( sampler, uv, vec4( fLodSizeInv, fLodSize ), floor( lod ) );
+		vec4 cSample = bicubic( sampler, uv, vec4( cLodSizeInv, cLodSize ), ceil( lod ) );
+		return mix( fSample, cSample, fract( lod ) );
+	}
+	vec3 getVolumeTransmissionRay( const in vec3 n, const in vec3 v, const in float thickness, const in float ior, const in mat4 modelMatrix ) {
+		vec3 refractionVector = refract( - v, normalize( n ), 1.0 / ior );
+		vec3 modelScale;
+		modelScale.x = length( vec3( modelMatrix[ 0 ].xyz ) );
+		modelScale.y = length( vec3( modelMatrix[ 1 ].xyz ) );
+		modelScale.z = length( vec3( modelMatrix[ 2 ].xyz ) );
+		return normalize( refractionVector ) * thickness * modelScale;
+	}
+	float applyIorToRoughness( const in float roughness, const in float ior ) {
+		return roughness * clamp( ior * 2.0 - 2.0, 0.0, 1.0 );
+	}
+	vec4 getTransmissionSample( const in vec2 fragCoord, const in float roughness, const in float ior ) {
+		float lod = log2( transmissionSamplerSize.x ) * applyIorToRoughness( roughness, ior );
+		return textureBicubic( transmissionSamplerMap, fragCoord.xy, lod );
+	}
+	vec3 volumeAttenuation( const in float transmissionDistance, const in vec3 attenuationColor, const in float attenuationDistance ) {
+		if ( isinf( attenuationDistance ) ) {
+			return vec3( 1.0 );
+		} else {
+			vec3 attenuationCoefficient = -log( attenuationColor ) / attenuationDistance;
+			vec3 transmittance = exp( - attenuationCoefficient * transmissionDistance );			return transmittance;
+		}
+	}
+	vec4 getIBLVolumeRefraction( const in vec3 n, const in vec3 v, const in float roughness, const in vec3 diffuseColor,
+		const in vec3 specularColor, const in float specularF90, const in vec3 position, const in mat4 modelMatrix,
+		const in mat4 viewMatrix, const in mat4 projMatrix, const in float dispersion, const in float ior, const in float thickness,
+		const in vec3 attenuationColor, const in float attenuationDistance ) {
+		vec4 transmittedLight;
+		vec3 transmittance;
+		#ifdef USE_DISPERSION
+			float halfSpread = ( ior - 1.0 ) * 0.025 * dispersion;
+			vec3 iors = vec3( ior - halfSpread, ior, ior + halfSpread );
+			for ( int i = 0; i < 3; i ++ ) {
+				vec3 transmissionRay = getVolumeTransmissionRay( n, v, thickness, iors[ i ], modelMatrix );
+				vec3 refractedRayExit = position + transmissionRay;
+		
+				vec4 ndcPos = projMatrix * viewMatrix * vec4( refractedRayExit, 1.0 );
+				vec2 refractionCoords = ndcPos.xy / ndcPos.w;
+				refractionCoords += 1.0;
+				refractionCoords /= 2.0;
+		
+				vec4 transmissionSample = getTransmissionSample( refractionCoords, roughness, iors[ i ] );
+				transmittedLight[ i ] = transmissionSample[ i ];
+				transmittedLight.a += transmissionSample.a;
+				transmittance[ i ] = diffuseColor[ i ] * volumeAttenuation( length( transmissionRay ), attenuationColor, attenuationDistance )[ i ];
+			}
+			transmittedLight.a /= 3.0;
+		
+		#else
+		
+			vec3 transmissionRay = getVolumeTransmissionRay( n, v, thickness, ior, modelMatrix );
+			vec3 refractedRayExit = position + transmissionRay;
+			vec4 ndcPos = projMatrix * viewMatrix * vec4( refractedRayExit, 1.0 );
+			vec2 refractionCoords = ndcPos.xy / ndcPos.w;
+			refractionCoords += 1.0;
+			refractionCoords /= 2.0;
+			transmittedLight = getTransmissionSample( refractionCoords, roughness, ior );
+			transmittance = diffuseColor * volumeAttenuation( length( transmissionRay ), attenuationColor, attenuationDistance );
+		
+		#endif
+		vec3 attenuatedColor = transmittance * transmittedLight.rgb;
+		vec3 F = EnvironmentBRDF( n, v, specularColor, specularF90, roughness );
+		float transmittanceFactor = ( transmittance.r + transmittance.g + transmittance.b ) / 3.0;
+		return vec4( ( 1.0 - F ) * attenuatedColor, 1.0 - ( 1.0 - transmittedLight.a ) * transmittanceFactor );
+	}
+#endif`,BS=`#if defined( USE_UV ) || defined( USE_ANISOTROPY )
+	varying vec2 vUv;
+#endif
+#ifdef USE_MAP
+	varying vec2 vMapUv;
+#endif
+#ifdef USE_ALPHAMAP
+	varying vec2 vAlphaMapUv;
+#endif
+#ifdef USE_LIGHTMAP
+	varying vec2 vLightMapUv;
+#endif
+#ifdef USE_AOMAP
+	varying vec2 vAoMapUv;
+#endif
+#ifdef USE_BUMPMAP
+	varying vec2 vBumpMapUv;
+#endif
+#ifdef USE_NORMALMAP
+	varying vec2 vNormalMapUv;
+#endif
+#ifdef USE_EMISSIVEMAP
+	varying vec2 vEmissiveMapUv;
+#endif
+#ifdef USE_METALNESSMAP
+	varying vec2 vMetalnessMapUv;
+#endif
+#ifdef USE_ROUGHNESSMAP
+	varying vec2 vRoughnessMapUv;
+#endif
+#ifdef USE_ANISOTROPYMAP
+	varying vec2 vAnisotropyMapUv;
+#endif
+#ifdef USE_CLEARCOATMAP
+	varying vec2 vClearcoatMapUv;
+#endif
+#ifdef USE_CLEARCOAT_NORMALMAP
+	varying vec2 vClearcoatNormalMapUv;
+#endif
+#ifdef USE_CLEARCOAT_ROUGHNESSMAP
+	varying vec2 vClearcoatRoughnessMapUv;
+#endif
+#ifdef USE_IRIDESCENCEMAP
+	varying vec2 vIridescenceMapUv;
+#endif
+#ifdef USE_IRIDESCENCE_THICKNESSMAP
+	varying vec2 vIridescenceThicknessMapUv;
+#endif
+#ifdef USE_SHEEN_COLORMAP
+	varying vec2 vSheenColorMapUv;
+#endif
+#ifdef USE_SHEEN_ROUGHNESSMAP
+	varying vec2 vSheenRoughnessMapUv;
+#endif
+#ifdef USE_SPECULARMAP
+	varying vec2 vSpecularMapUv;
+#endif
+#ifdef USE_SPECULAR_COLORMAP
+	varying vec2 vSpecularColorMapUv;
+#endif
+#ifdef USE_SPECULAR_INTENSITYMAP
+	varying vec2 vSpecularIntensityMapUv;
+#endif
+#ifdef USE_TRANSMISSIONMAP
+	uniform mat3 transmissionMapTransform;
+	varying vec2 vTransmissionMapUv;
+#endif
+#ifdef USE_THICKNESSMAP
+	uniform mat3 thicknessMapTransform;
+	varying vec2 vThicknessMapUv;
+#endif`,zS=`#if defined( USE_UV ) || defined( USE_ANISOTROPY )
+	varying vec2 vUv;
+#endif
+#ifdef USE_MAP
+	uniform mat3 mapTransform;
+	varying vec2 vMapUv;
+#endif
+#ifdef USE_ALPHAMAP
+	uniform mat3 alphaMapTransform;
+	varying vec2 vAlphaMapUv;
+#endif
+#ifdef USE_LIGHTMAP
+	uniform mat3 lightMapTransform;
+	varying vec2 vLightMapUv;
+#endif
+#ifdef USE_AOMAP
+	uniform mat3 aoMapTransform;
+	varying vec2 vAoMapUv;
+#endif
+#ifdef USE_BUMPMAP
+	uniform mat3 bumpMapTransform;
+	varying vec2 vBumpMapUv;
+#endif
+#ifdef USE_NORMALMAP
+	uniform mat3 normalMapTransform;
+	varying vec2 vNormalMapUv;
+#endif
+#ifdef USE_DISPLACEMENTMAP
+	uniform mat3 displacementMapTransform;
+	varying vec2 vDisplacementMapUv;
+#endif
+#ifdef USE_EMISSIVEMAP
+	uniform mat3 emissiveMapTransform;
+	varying vec2 vEmissiveMapUv;
+#endif
+#ifdef USE_METALNESSMAP
+	uniform mat3 metalnessMapTransform;
+	varying vec2 vMetalnessMapUv;
+#endif
+#ifdef USE_ROUGHNESSMAP
+	uniform mat3 roughnessMapTransform;
+	varying vec2 vRoughnessMapUv;
+#endif
+#ifdef USE_ANISOTROPYMAP
+	uniform mat3 anisotropyMapTransform;
+	varying vec2 vAnisotropyMapUv;
+#endif
+#ifdef USE_CLEARCOATMAP
+	uniform mat3 clearcoatMapTransform;
+	varying vec2 vClearcoatMapUv;
+#endif
+#ifdef USE_CLEARCOAT_NORMALMAP
+	uniform mat3 clearcoatNormalMapTransform;
+	varying vec2 vClearcoatNormalMapUv;
+#endif
+#ifdef USE_CLEARCOAT_ROUGHNESSMAP
+	uniform mat3 clearcoatRoughnessMapTransform;
+	varying vec2 vClearcoatRoughnessMapUv;
+#endif
+#ifdef USE_SHEEN_COLORMAP
+	uniform mat3 sheenColorMapTransform;
+	varying vec2 vSheenColorMapUv;
+#endif
+#ifdef USE_SHEEN_ROUGHNESSMAP
+	uniform mat3 sheenRoughnessMapTransform;
+	varying vec2 vSheenRoughnessMapUv;
+#endif
+#ifdef USE_IRIDESCENCEMAP
+	uniform mat3 iridescenceMapTransform;
+	varying vec2 vIridescenceMapUv;
+#endif
+#ifdef USE_IRIDESCENCE_THICKNESSMAP
+	uniform mat3 iridescenceThicknessMapTransform;
+	varying vec2 vIridescenceThicknessMapUv;
+#endif
+#ifdef USE_SPECULARMAP
+	uniform mat3 specularMapTransform;
+	varying vec2 vSpecularMapUv;
+#endif
+#ifdef USE_SPECULAR_COLORMAP
+	uniform mat3 specularColorMapTransform;
+	varying vec2 vSpecularColorMapUv;
+#endif
+#ifdef USE_SPECULAR_INTENSITYMAP
+	uniform mat3 specularIntensityMapTransform;
+	varying vec2 vSpecularIntensityMapUv;
+#endif
+#ifdef USE_TRANSMISSIONMAP
+	uniform mat3 transmissionMapTransform;
+	varying vec2 vTransmissionMapUv;
+#endif
+#ifdef USE_THICKNESSMAP
+	uniform mat3 thicknessMapTransform;
+	varying vec2 vThicknessMapUv;
+#endif`,kS=`#if defined( USE_UV ) || defined( USE_ANISOTROPY )
+	vUv = vec3( uv, 1 ).xy;
+#endif
+#ifdef USE_MAP
+	vMapUv = ( mapTransform * vec3( MAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_ALPHAMAP
+	vAlphaMapUv = ( alphaMapTransform * vec3( ALPHAMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_LIGHTMAP
+	vLightMapUv = ( lightMapTransform * vec3( LIGHTMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_AOMAP
+	vAoMapUv = ( aoMapTransform * vec3( AOMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_BUMPMAP
+	vBumpMapUv = ( bumpMapTransform * vec3( BUMPMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_NORMALMAP
+	vNormalMapUv = ( normalMapTransform * vec3( NORMALMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_DISPLACEMENTMAP
+	vDisplacementMapUv = ( displacementMapTransform * vec3( DISPLACEMENTMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_EMISSIVEMAP
+	vEmissiveMapUv = ( emissiveMapTransform * vec3( EMISSIVEMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_METALNESSMAP
+	vMetalnessMapUv = ( metalnessMapTransform * vec3( METALNESSMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_ROUGHNESSMAP
+	vRoughnessMapUv = ( roughnessMapTransform * vec3( ROUGHNESSMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_ANISOTROPYMAP
+	vAnisotropyMapUv = ( anisotropyMapTransform * vec3( ANISOTROPYMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_CLEARCOATMAP
+	vClearcoatMapUv = ( clearcoatMapTransform * vec3( CLEARCOATMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_CLEARCOAT_NORMALMAP
+	vClearcoatNormalMapUv = ( clearcoatNormalMapTransform * vec3( CLEARCOAT_NORMALMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_CLEARCOAT_ROUGHNESSMAP
+	vClearcoatRoughnessMapUv = ( clearcoatRoughnessMapTransform * vec3( CLEARCOAT_ROUGHNESSMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_IRIDESCENCEMAP
+	vIridescenceMapUv = ( iridescenceMapTransform * vec3( IRIDESCENCEMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_IRIDESCENCE_THICKNESSMAP
+	vIridescenceThicknessMapUv = ( iridescenceThicknessMapTransform * vec3( IRIDESCENCE_THICKNESSMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_SHEEN_COLORMAP
+	vSheenColorMapUv = ( sheenColorMapTransform * vec3( SHEEN_COLORMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_SHEEN_ROUGHNESSMAP
+	vSheenRoughnessMapUv = ( sheenRoughnessMapTransform * vec3( SHEEN_ROUGHNESSMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_SPECULARMAP
+	vSpecularMapUv = ( specularMapTransform * vec3( SPECULARMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_SPECULAR_COLORMAP
+	vSpecularColorMapUv = ( specularColorMapTransform * vec3( SPECULAR_COLORMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_SPECULAR_INTENSITYMAP
+	vSpecularIntensityMapUv = ( specularIntensityMapTransform * vec3( SPECULAR_INTENSITYMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_TRANSMISSIONMAP
+	vTransmissionMapUv = ( transmissionMapTransform * vec3( TRANSMISSIONMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_THICKNESSMAP
+	vThicknessMapUv = ( thicknessMapTransform * vec3( THICKNESSMAP_UV, 1 ) ).xy;
+#endif`,VS=`#if defined( USE_ENVMAP ) || defined( DISTANCE ) || defined ( USE_SHADOWMAP ) || defined ( USE_TRANSMISSION ) || NUM_SPOT_LIGHT_COORDS > 0
+	vec4 worldPosition = vec4( transformed, 1.0 );
+	#ifdef USE_BATCHING
+		worldPosition = batchingMatrix * worldPosition;
+	#endif
+	#ifdef USE_INSTANCING
+		worldPosition = instanceMatrix * worldPosition;
+	#endif
+	worldPosition = modelMatrix * worldPosition;
+#endif`,HS=`varying vec2 vUv;
+uniform mat3 uvTransform;
+void main() {
+	vUv = ( uvTransform * vec3( uv, 1 ) ).xy;
+	gl_Position = vec4( position.xy, 1.0, 1.0 );
+}`,GS=`uniform sampler2D t2D;
+uniform float backgroundIntensity;
+varying vec2 vUv;
+void main() {
+	vec4 texColor = texture2D( t2D, vUv );
+	#ifdef DECODE_VIDEO_TEXTURE
+		texColor = vec4( mix( pow( texColor.rgb * 0.9478672986 + vec3( 0.0521327014 ), vec3( 2.4 ) ), texColor.rgb * 0.0773993808, vec3( lessThanEqual( texColor.rgb, vec3( 0.04045 ) ) ) ), texColor.w );
+	#endif
+	texColor.rgb *= backgroundIntensity;
+	gl_FragColor = texColor;
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+}`,WS=`varying vec3 vWorldDirection;
+#include <common>
+void main() {
+	vWorldDirection = transformDirection( position, modelMatrix );
+	#include <begin_vertex>
+	#include <project_vertex>
+	gl_Position.z = gl_Position.w;
+}`,XS=`#ifdef ENVMAP_TYPE_CUBE
+	uniform samplerCube envMap;
+#elif defined( ENVMAP_TYPE_CUBE_UV )
+	uniform sampler2D envMap;
+#endif
+uniform float flipEnvMap;
+uniform float backgroundBlurriness;
+uniform float backgroundIntensity;
+uniform mat3 backgroundRotation;
+varying vec3 vWorldDirection;
+#include <cube_uv_reflection_fragment>
+void main() {
+	#ifdef ENVMAP_TYPE_CUBE
+		vec4 texColor = textureCube( envMap, backgroundRotation * vec3( flipEnvMap * vWorldDirection.x, vWorldDirection.yz ) );
+	#elif defined( ENVMAP_TYPE_CUBE_UV )
+		vec4 texColor = textureCubeUV( envMap, backgroundRotation * vWorldDirection, backgroundBlurriness );
+	#else
+		vec4 texColor = vec4( 0.0, 0.0, 0.0, 1.0 );
+	#endif
+	texColor.rgb *= backgroundIntensity;
+	gl_FragColor = texColor;
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+}`,qS=`varying vec3 vWorldDirection;
+#include <common>
+void main() {
+	vWorldDirection = transformDirection( position, modelMatrix );
+	#include <begin_vertex>
+	#include <project_vertex>
+	gl_Position.z = gl_Position.w;
+}`,YS=`uniform samplerCube tCube;
+uniform float tFlip;
+uniform float opacity;
+varying vec3 vWorldDirection;
+void main() {
+	vec4 texColor = textureCube( tCube, vec3( tFlip * vWorldDirection.x, vWorldDirection.yz ) );
+	gl_FragColor = texColor;
+	gl_FragColor.a *= opacity;
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+}`,$S=`#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+varying vec2 vHighPrecisionZW;
+void main() {
+	#include <uv_vertex>
+	#include <batching_vertex>
+	#include <skinbase_vertex>
+	#include <morphinstance_vertex>
+	#ifdef USE_DISPLACEMENTMAP
+		#include <beginnormal_vertex>
+		#include <morphnormal_vertex>
+		#include <skinnormal_vertex>
+	#endif
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	vHighPrecisionZW = gl_Position.zw;
+}`,ZS=`#if DEPTH_PACKING == 3200
+	uniform float opacity;
+#endif
+#include <common>
+#include <packing>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+varying vec2 vHighPrecisionZW;
+void main() {
+	vec4 diffuseColor = vec4( 1.0 );
+	#include <clipping_planes_fragment>
+	#if DEPTH_PACKING == 3200
+		diffuseColor.a = opacity;
+	#endif
+	#include <map_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <logdepthbuf_fragment>
+	float fragCoordZ = 0.5 * vHighPrecisionZW[0] / vHighPrecisionZW[1] + 0.5;
+	#if DEPTH_PACKING == 3200
+		gl_FragColor = vec4( vec3( 1.0 - fragCoordZ ), opacity );
+	#elif DEPTH_PACKING == 3201
+		gl_FragColor = packDepthToRGBA( fragCoordZ );
+	#elif DEPTH_PACKING == 3202
+		gl_FragColor = vec4( packDepthToRGB( fragCoordZ ), 1.0 );
+	#elif DEPTH_PACKING == 3203
+		gl_FragColor = vec4( packDepthToRG( fragCoordZ ), 0.0, 1.0 );
+	#endif
+}`,JS=`#define DISTANCE
+varying vec3 vWorldPosition;
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <batching_vertex>
+	#include <skinbase_vertex>
+	#include <morphinstance_vertex>
+	#ifdef USE_DISPLACEMENTMAP
+		#include <beginnormal_vertex>
+		#include <morphnormal_vertex>
+		#include <skinnormal_vertex>
+	#endif
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <worldpos_vertex>
+	#include <clipping_planes_vertex>
+	vWorldPosition = worldPosition.xyz;
+}`,KS=`#define DISTANCE
+uniform vec3 referencePosition;
+uniform float nearDistance;
+uniform float farDistance;
+varying vec3 vWorldPosition;
+#include <common>
+#include <packing>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main () {
+	vec4 diffuseColor = vec4( 1.0 );
+	#include <clipping_planes_fragment>
+	#include <map_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	float dist = length( vWorldPosition - referencePosition );
+	dist = ( dist - nearDistance ) / ( farDistance - nearDistance );
+	dist = saturate( dist );
+	gl_FragColor = packDepthToRGBA( dist );
+}`,jS=`varying vec3 vWorldDirection;
+#include <common>
+void main() {
+	vWorldDirection = transformDirection( position, modelMatrix );
+	#include <begin_vertex>
+	#include <project_vertex>
+}`,QS=`uniform sampler2D tEquirect;
+varying vec3 vWorldDirection;
+#include <common>
+void main() {
+	vec3 direction = normalize( vWorldDirection );
+	vec2 sampleUV = equirectUv( direction );
+	gl_FragColor = texture2D( tEquirect, sampleUV );
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+}`,tb=`uniform float scale;
+attribute float lineDistance;
+varying float vLineDistance;
+#include <common>
+#include <uv_pars_vertex>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	vLineDistance = scale * lineDistance;
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	#include <fog_vertex>
+}`,eb=`uniform vec3 diffuse;
+uniform float opacity;
+uniform float dashSize;
+uniform float totalSize;
+varying float vLineDistance;
+#include <common>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <fog_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	if ( mod( vLineDistance, totalSize ) > dashSize ) {
+		discard;
+	}
+	vec3 outgoingLight = vec3( 0.0 );
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	outgoingLight = diffuseColor.rgb;
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+}`,nb=`#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <envmap_pars_vertex>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <batching_vertex>
+	#if defined ( USE_ENVMAP ) || defined ( USE_SKINNING )
+		#include <beginnormal_vertex>
+		#include <morphnormal_vertex>
+		#include <skinbase_vertex>
+		#include <skinnormal_vertex>
+		#include <defaultnormal_vertex>
+	#endif
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	#include <worldpos_vertex>
+	#include <envmap_vertex>
+	#include <fog_vertex>
+}`,ib=`uniform vec3 diffuse;
+uniform float opacity;
+#ifndef FLAT_SHADED
+	varying vec3 vNormal;
+#endif
+#include <common>
+#include <dithering_pars_fragment>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <aomap_pars_fragment>
+#include <lightmap_pars_fragment>
+#include <envmap_common_pars_fragment>
+#include <envmap_pars_fragment>
+#include <fog_pars_fragment>
+#include <specularmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <specularmap_fragment>
+	ReflectedLight reflectedLight = ReflectedLight( vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ) );
+	#ifdef USE_LIGHTMAP
+		vec4 lightMapTexel = texture2D( lightMap, vLightMapUv );
+		reflectedLight.indirectDiffuse += lightMapTexel.rgb * lightMapIntensity * RECIPROCAL_PI;
+	#else
+		reflectedLight.indirectDiffuse += vec3( 1.0 );
+	#endif
+	#include <aomap_fragment>
+	reflectedLight.indirectDiffuse *= diffuseColor.rgb;
+	vec3 outgoingLight = reflectedLight.indirectDiffuse;
+	#include <envmap_fragment>
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+	#include <dithering_fragment>
+}`,sb=`#define LAMBERT
+varying vec3 vViewPosition;
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <envmap_pars_vertex>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <normal_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <shadowmap_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <normal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	vViewPosition = - mvPosition.xyz;
+	#include <worldpos_vertex>
+	#include <envmap_vertex>
+	#include <shadowmap_vertex>
+	#include <fog_vertex>
+}`,rb=`#define LAMBERT
+uniform vec3 diffuse;
+uniform vec3 emissive;
+uniform float opacity;
+#include <common>
+#include <packing>
+#include <dithering_pars_fragment>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <aomap_pars_fragment>
+#include <lightmap_pars_fragment>
+#include <emissivemap_pars_fragment>
+#include <envmap_common_pars_fragment>
+#include <envmap_pars_fragment>
+#include <fog_pars_fragment>
+#include <bsdfs>
+#include <lights_pars_begin>
+#include <normal_pars_fragment>
+#include <lights_lambert_pars_fragment>
+#include <shadowmap_pars_fragment>
+#include <bumpmap_pars_fragment>
+#include <normalmap_pars_fragment>
+#include <specularmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	ReflectedLight reflectedLight = ReflectedLight( vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ) );
+	vec3 totalEmissiveRadiance = emissive;
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <specularmap_fragment>
+	#include <normal_fragment_begin>
+	#include <normal_fragment_maps>
+	#include <emissivemap_fragment>
+	#include <lights_lambert_fragment>
+	#include <lights_fragment_begin>
+	#include <lights_fragment_maps>
+	#include <lights_fragment_end>
+	#include <aomap_fragment>
+	vec3 outgoingLight = reflectedLight.directDiffuse + reflectedLight.indirectDiffuse + totalEmissiveRadiance;
+	#include <envmap_fragment>
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+	#include <dithering_fragment>
+}`,ob=`#define MATCAP
+varying vec3 vViewPosition;
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <color_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <fog_pars_vertex>
+#include <normal_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <normal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	#include <fog_vertex>
+	vViewPosition = - mvPosition.xyz;
+}`,ab=`#define MATCAP
+uniform vec3 diffuse;
+uniform float opacity;
+uniform sampler2D matcap;
+varying vec3 vViewPosition;
+#include <common>
+#include <dithering_pars_fragment>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <fog_pars_fragment>
+#include <normal_pars_fragment>
+#include <bumpmap_pars_fragment>
+#include <normalmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <normal_fragment_begin>
+	#include <normal_fragment_maps>
+	vec3 viewDir = normalize( vViewPosition );
+	vec3 x = normalize( vec3( viewDir.z, 0.0, - viewDir.x ) );
+	vec3 y = cross( viewDir, x );
+	vec2 uv = vec2( dot( x, normal ), dot( y, normal ) ) * 0.495 + 0.5;
+	#ifdef USE_MATCAP
+		vec4 matcapColor = texture2D( matcap, uv );
+	#else
+		vec4 matcapColor = vec4( vec3( mix( 0.2, 0.8, uv.y ) ), 1.0 );
+	#endif
+	vec3 outgoingLight = diffuseColor.rgb * matcapColor.rgb;
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+	#include <dithering_fragment>
+}`,lb=`#define NORMAL
+#if defined( FLAT_SHADED ) || defined( USE_BUMPMAP ) || defined( USE_NORMALMAP_TANGENTSPACE )
+	varying vec3 vViewPosition;
+#endif
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <normal_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphinstance_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <normal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+#if defined( FLAT_SHADED ) || defined( USE_BUMPMAP ) || defined( USE_NORMALMAP_TANGENTSPACE )
+	vViewPosition = - mvPosition.xyz;
+#endif
+}`,cb=`#define NORMAL
+uniform float opacity;
+#if defined( FLAT_SHADED ) || defined( USE_BUMPMAP ) || defined( USE_NORMALMAP_TANGENTSPACE )
+	varying vec3 vViewPosition;
+#endif
+#include <packing>
+#include <uv_pars_fragment>
+#include <normal_pars_fragment>
+#include <bumpmap_pars_fragment>
+#include <normalmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( 0.0, 0.0, 0.0, opacity );
+	#include <clipping_planes_fragment>
+	#include <logdepthbuf_fragment>
+	#include <normal_fragment_begin>
+	#include <normal_fragment_maps>
+	gl_FragColor = vec4( packNormalToRGB( normal ), diffuseColor.a );
+	#ifdef OPAQUE
+		gl_FragColor.a = 1.0;
+	#endif
+}`,hb=`#define PHONG
+varying vec3 vViewPosition;
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <envmap_pars_vertex>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <normal_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <shadowmap_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphcolor_vertex>
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphinstance_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <normal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	vViewPosition = - mvPosition.xyz;
+	#include <worldpos_vertex>
+	#include <envmap_vertex>
+	#include <shadowmap_vertex>
+	#include <fog_vertex>
+}`,ub=`#define PHONG
+uniform vec3 diffuse;
+uniform vec3 emissive;
+uniform vec3 specular;
+uniform float shininess;
+uniform float opacity;
+#include <common>
+#include <packing>
+#include <dithering_pars_fragment>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <aomap_pars_fragment>
+#include <lightmap_pars_fragment>
+#include <emissivemap_pars_fragment>
+#include <envmap_common_pars_fragment>
+#include <envmap_pars_fragment>
+#include <fog_pars_fragment>
+#include <bsdfs>
+#include <lights_pars_begin>
+#include <normal_pars_fragment>
+#include <lights_phong_pars_fragment>
+#include <shadowmap_pars_fragment>
+#include <bumpmap_pars_fragment>
+#include <normalmap_pars_fragment>
+#include <specularmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	ReflectedLight reflectedLight = ReflectedLight( vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ) );
+	vec3 totalEmissiveRadiance = emissive;
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <specularmap_fragment>
+	#include <normal_fragment_begin>
+	#include <normal_fragment_maps>
+	#include <emissivemap_fragment>
+	#include <lights_phong_fragment>
+	#include <lights_fragment_begin>
+	#include <lights_fragment_maps>
+	#include <lights_fragment_end>
+	#include <aomap_fragment>
+	vec3 outgoingLight = reflectedLight.directDiffuse + reflectedLight.indirectDiffuse + reflectedLight.directSpecular + reflectedLight.indirectSpecular + totalEmissiveRadiance;
+	#include <envmap_fragment>
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+	#include <dithering_fragment>
+}`,db=`#define STANDARD
+varying vec3 vViewPosition;
+#ifdef USE_TRANSMISSION
+	varying vec3 vWorldPosition;
+#endif
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <normal_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <shadowmap_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <normal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	vViewPosition = - mvPosition.xyz;
+	#include <worldpos_vertex>
+	#include <shadowmap_vertex>
+	#include <fog_vertex>
+#ifdef USE_TRANSMISSION
+	vWorldPosition = worldPosition.xyz;
+#endif
+}`,fb=`#define STANDARD
+#ifdef PHYSICAL
+	#define IOR
+	#define USE_SPECULAR
+#endif
+uniform vec3 diffuse;
+uniform vec3 emissive;
+uniform float roughness;
+uniform float metalness;
+uniform float opacity;
+#ifdef IOR
+	uniform float ior;
+#endif
+#ifdef USE_SPECULAR
+	uniform float specularIntensity;
+	uniform vec3 specularColor;
+	#ifdef USE_SPECULAR_COLORMAP
+		uniform sampler2D specularColorMap;
+	#endif
+	#ifdef USE_SPECULAR_INTENSITYMAP
+		uniform sampler2D specularIntensityMap;
+	#endif
+#endif
+#ifdef USE_CLEARCOAT
+	uniform float clearcoat;
+	uniform float clearcoatRoughness;
+#endif
+#ifdef USE_DISPERSION
+	uniform float dispersion;
+#endif
+#ifdef USE_IRIDESCENCE
+	uniform float iridescence;
+	uniform float iridescenceIOR;
+	uniform float iridescenceThicknessMinimum;
+	uniform float iridescenceThicknessMaximum;
+#endif
+#ifdef USE_SHEEN
+	uniform vec3 sheenColor;
+	uniform float sheenRoughness;
+	#ifdef USE_SHEEN_COLORMAP
+		uniform sampler2D sheenColorMap;
+	#endif
+	#ifdef USE_SHEEN_ROUGHNESSMAP
+		uniform sampler2D sheenRoughnessMap;
+	#endif
+#endif
+#ifdef USE_ANISOTROPY
+	uniform vec2 anisotropyVector;
+	#ifdef USE_ANISOTROPYMAP
+		uniform sampler2D anisotropyMap;
+	#endif
+#endif
+varying vec3 vViewPosition;
+#include <common>
+#include <packing>
+#include <dithering_pars_fragment>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <aomap_pars_fragment>
+#include <lightmap_pars_fragment>
+#include <emissivemap_pars_fragment>
+#include <iridescence_fragment>
+#include <cube_uv_reflection_fragment>
+#include <envmap_common_pars_fragment>
+#include <envmap_physical_pars_fragment>
+#include <fog_pars_fragment>
+#include <lights_pars_begin>
+#include <normal_pars_fragment>
+#include <lights_physical_pars_fragment>
+#include <transmission_pars_fragment>
+#include <shadowmap_pars_fragment>
+#include <bumpmap_pars_fragment>
+#include <normalmap_pars_fragment>
+#include <clearcoat_pars_fragment>
+#include <iridescence_pars_fragment>
+#include <roughnessmap_pars_fragment>
+#include <metalnessmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	ReflectedLight reflectedLight = ReflectedLight( vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ) );
+	vec3 totalEmissiveRadiance = emissive;
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <roughnessmap_fragment>
+	#include <metalnessmap_fragment>
+	#include <normal_fragment_begin>
+	#include <normal_fragment_maps>
+	#include <clearcoat_normal_fragment_begin>
+	#include <clearcoat_normal_fragment_maps>
+	#include <emissivemap_fragment>
+	#include <lights_physical_fragment>
+	#include <lights_fragment_begin>
+	#include <lights_fragment_maps>
+	#include <lights_fragment_end>
+	#include <aomap_fragment>
+	vec3 totalDiffuse = reflectedLight.directDiffuse + reflectedLight.indirectDiffuse;
+	vec3 totalSpecular = reflectedLight.directSpecular + reflectedLight.indirectSpecular;
+	#include <transmission_fragment>
+	vec3 outgoingLight = totalDiffuse + totalSpecular + totalEmissiveRadiance;
+	#ifdef USE_SHEEN
+		float sheenEnergyComp = 1.0 - 0.157 * max3( material.sheenColor );
+		outgoingLight = outgoingLight * sheenEnergyComp + sheenSpecularDirect + sheenSpecularIndirect;
+	#endif
+	#ifdef USE_CLEARCOAT
+		float dotNVcc = saturate( dot( geometryClearcoatNormal, geometryViewDir ) );
+		vec3 Fcc = F_Schlick( material.clearcoatF0, material.clearcoatF90, dotNVcc );
+		outgoingLight = outgoingLight * ( 1.0 - material.clearcoat * Fcc ) + ( clearcoatSpecularDirect + clearcoatSpecularIndirect ) * material.clearcoat;
+	#endif
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+	#include <dithering_fragment>
+}`,pb=`#define TOON
+varying vec3 vViewPosition;
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <normal_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <shadowmap_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <normal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	vViewPosition = - mvPosition.xyz;
+	#include <worldpos_vertex>
+	#include <shadowmap_vertex>
+	#include <fog_vertex>
+}`,mb=`#define TOON
+uniform vec3 diffuse;
+uniform vec3 emissive;
+uniform float opacity;
+#include <common>
+#include <packing>
+#include <dithering_pars_fragment>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <aomap_pars_fragment>
+#include <lightmap_pars_fragment>
+#include <emissivemap_pars_fragment>
+#include <gradientmap_pars_fragment>
+#include <fog_pars_fragment>
+#include <bsdfs>
+#include <lights_pars_begin>
+#include <normal_pars_fragment>
+#include <lights_toon_pars_fragment>
+#include <shadowmap_pars_fragment>
+#include <bumpmap_pars_fragment>
+#include <normalmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	ReflectedLight reflectedLight = ReflectedLight( vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ) );
+	vec3 totalEmissiveRadiance = emissive;
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <normal_fragment_begin>
+	#include <normal_fragment_maps>
+	#include <emissivemap_fragment>
+	#include <lights_toon_fragment>
+	#include <lights_fragment_begin>
+	#include <lights_fragment_maps>
+	#include <lights_fragment_end>
+	#include <aomap_fragment>
+	vec3 outgoingLight = reflectedLight.directDiffuse + reflectedLight.indirectDiffuse + totalEmissiveRadiance;
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+	#include <dithering_fragment>
+}`,gb=`uniform float size;
+uniform float scale;
+#include <common>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+#ifdef USE_POINTS_UV
+	varying vec2 vUv;
+	uniform mat3 uvTransform;
+#endif
+void main() {
+	#ifdef USE_POINTS_UV
+		vUv = ( uvTransform * vec3( uv, 1 ) ).xy;
+	#endif
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <project_vertex>
+	gl_PointSize = size;
+	#ifdef USE_SIZEATTENUATION
+		bool isPerspective = isPerspectiveMatrix( projectionMatrix );
+		if ( isPerspective ) gl_PointSize *= ( scale / - mvPosition.z );
+	#endif
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	#include <worldpos_vertex>
+	#include <fog_vertex>
+}`,_b=`uniform vec3 diffuse;
+uniform float opacity;
+#include <common>
+#include <color_pars_fragment>
+#include <map_particle_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <fog_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	vec3 outgoingLight = vec3( 0.0 );
+	#include <logdepthbuf_fragment>
+	#include <map_particle_fragment>
+	#include <color_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	outgoingLight = diffuseColor.rgb;
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+}`,xb=`#include <common>
+#include <batching_pars_vertex>
+#include <fog_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <shadowmap_pars_vertex>
+void main() {
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphinstance_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <worldpos_vertex>
+	#include <shadowmap_vertex>
+	#include <fog_vertex>
+}`,yb=`uniform vec3 color;
+uniform float opacity;
+#include <common>
+#include <packing>
+#include <fog_pars_fragment>
+#include <bsdfs>
+#include <lights_pars_begin>
+#include <logdepthbuf_pars_fragment>
+#include <shadowmap_pars_fragment>
+#include <shadowmask_pars_fragment>
+void main() {
+	#include <logdepthbuf_fragment>
+	gl_FragColor = vec4( color, opacity * ( 1.0 - getShadowMask() ) );
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+}`,vb=`uniform float rotation;
+uniform vec2 center;
+#include <common>
+#include <uv_pars_vertex>
+#include <fog_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	vec4 mvPosition = modelViewMatrix[ 3 ];
+	vec2 scale = vec2( length( modelMatrix[ 0 ].xyz ), length( modelMatrix[ 1 ].xyz ) );
+	#ifndef USE_SIZEATTENUATION
+		bool isPerspective = isPerspectiveMatrix( projectionMatrix );
+		if ( isPerspective ) scale *= - mvPosition.z;
+	#endif
+	vec2 alignedPosition = ( position.xy - ( center - vec2( 0.5 ) ) ) * scale;
+	vec2 rotatedPosition;
+	rotatedPosition.x = cos( rotation ) * alignedPosition.x - sin( rotation ) * alignedPosition.y;
+	rotatedPosition.y = sin( rotation ) * alignedPosition.x + cos( rotation ) * alignedPosition.y;
+	mvPosition.xy += rotatedPosition;
+	gl_Position = projectionMatrix * mvPosition;
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	#include <fog_vertex>
+}`,Mb=`uniform vec3 diffuse;
+uniform float opacity;
+#include <common>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <fog_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	vec3 outgoingLight = vec3( 0.0 );
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	outgoingLight = diffuseColor.rgb;
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+}`,ce={alphahash_fragment:Gv,alphahash_pars_fragment:Wv,alphamap_fragment:Xv,alphamap_pars_fragment:qv,alphatest_fragment:Yv,alphatest_pars_fragment:$v,aomap_fragment:Zv,aomap_pars_fragment:Jv,batching_pars_vertex:Kv,batching_vertex:jv,begin_vertex:Qv,beginnormal_vertex:tM,bsdfs:eM,iridescence_fragment:nM,bumpmap_pars_fragment:iM,clipping_planes_fragment:sM,clipping_planes_pars_fragment:rM,clipping_planes_pars_vertex:oM,clipping_planes_vertex:aM,color_fragment:lM,color_pars_fragment:cM,color_pars_vertex:hM,color_vertex:uM,common:dM,cube_uv_reflection_fragment:fM,defaultnormal_vertex:pM,displacementmap_pars_vertex:mM,displacementmap_vertex:gM,emissivemap_fragment:_M,emissivemap_pars_fragment:xM,colorspace_fragment:yM,colorspace_pars_fragment:vM,envmap_fragment:MM,envmap_common_pars_fragment:SM,envmap_pars_fragment:bM,envmap_pars_vertex:wM,envmap_physical_pars_fragment:NM,envmap_vertex:EM,fog_vertex:TM,fog_pars_vertex:AM,fog_fragment:CM,fog_pars_fragment:RM,gradientmap_pars_fragment:PM,lightmap_pars_fragment:IM,lights_lambert_fragment:LM,lights_lambert_pars_fragment:DM,lights_pars_begin:UM,lights_toon_fragment:FM,lights_toon_pars_fragment:OM,lights_phong_fragment:BM,lights_phong_pars_fragment:zM,lights_physical_fragment:kM,lights_physical_pars_fragment:VM,lights_fragment_begin:HM,lights_fragment_maps:GM,lights_fragment_end:WM,logdepthbuf_fragment:XM,logdepthbuf_pars_fragment:qM,logdepthbuf_pars_vertex:YM,logdepthbuf_vertex:$M,map_fragment:ZM,map_pars_fragment:JM,map_particle_fragment:KM,map_particle_pars_fragment:jM,metalnessmap_fragment:QM,metalnessmap_pars_fragment:tS,morphinstance_vertex:eS,morphcolor_vertex:nS,morphnormal_vertex:iS,morphtarget_pars_vertex:sS,morphtarget_vertex:rS,normal_fragment_begin:oS,normal_fragment_maps:aS,normal_pars_fragment:lS,normal_pars_vertex:cS,normal_vertex:hS,normalmap_pars_fragment:uS,clearcoat_normal_fragment_begin:dS,clearcoat_normal_fragment_maps:fS,clearcoat_pars_fragment:pS,iridescence_pars_fragment:mS,opaque_fragment:gS,packing:_S,premultiplied_alpha_fragment:xS,project_vertex:yS,dithering_fragment:vS,dithering_pars_fragment:MS,roughnessmap_fragment:SS,roughnessmap_pars_fragment:bS,shadowmap_pars_fragment:wS,shadowmap_pars_vertex:ES,shadowmap_vertex:TS,shadowmask_pars_fragment:AS,skinbase_vertex:CS,skinning_pars_vertex:RS,skinning_vertex:PS,skinnormal_vertex:IS,specularmap_fragment:LS,specularmap_pars_fragment:DS,tonemapping_fragment:US,tonemapping_pars_fragment:NS,transmission_fragment:FS,transmission_pars_fragment:OS,uv_pars_fragment:BS,uv_pars_vertex:zS,uv_vertex:kS,worldpos_vertex:VS,background_vert:HS,background_frag:GS,backgroundCube_vert:WS,backgroundCube_frag:XS,cube_vert:qS,cube_frag:YS,depth_vert:$S,depth_frag:ZS,distanceRGBA_vert:JS,distanceRGBA_frag:KS,equirect_vert:jS,equirect_frag:QS,linedashed_vert:tb,linedashed_frag:eb,meshbasic_vert:nb,meshbasic_frag:ib,meshlambert_vert:sb,meshlambert_frag:rb,meshmatcap_vert:ob,meshmatcap_frag:ab,meshnormal_vert:lb,meshnormal_frag:cb,meshphong_vert:hb,meshphong_frag:ub,meshphysical_vert:db,meshphysical_frag:fb,meshtoon_vert:pb,meshtoon_frag:mb,points_vert:gb,points_frag:_b,shadow_vert:xb,shadow_frag:yb,sprite_vert:vb,sprite_frag:Mb},St={common:{diffuse:{value:new oe(16777215)},opacity:{value:1},map:{value:null},mapTransform:{value:new le},alphaMap:{value:null},alphaMapTransform:{value:new le},alphaTest:{value:0}},specularmap:{specularMap:{value:null},specularMapTransform:{value:new le}},envmap:{envMap:{value:null},envMapRotation:{value:new le},flipEnvMap:{value:-1},reflectivity:{value:1},ior:{value:1.5},refractionRatio:{value:.98}},aomap:{aoMap:{value:null},aoMapIntensity:{value:1},aoMapTransform:{value:new le}},lightmap:{lightMap:{value:null},lightMapIntensity:{value:1},lightMapTransform:{value:new le}},bumpmap:{bumpMap:{value:null},bumpMapTransform:{value:new le},bumpScale:{value:1}},normalmap:{normalMap:{value:null},normalMapTransform:{value:new le},normalScale:{value:new gt(1,1)}},displacementmap:{displacementMap:{value:null},displacementMapTransform:{value:new le},displacementScale:{value:1},displacementBias:{value:0}},emissivemap:{emissiveMap:{value:null},emissiveMapTransform:{value:new le}},metalnessmap:{metalnessMap:{value:null},metalnessMapTransform:{value:new le}},roughnessmap:{roughnessMap:{value:null},roughnessMapTransform:{value:new le}},gradientmap:{gradientMap:{value:null}},fog:{fogDensity:{value:25e-5},fogNear:{value:1},fogFar:{value:2e3},fogColor:{value:new oe(16777215)}},lights:{ambientLightColor:{value:[]},lightProbe:{value:[]},directionalLights:{value:[],properties:{direction:{},color:{}}},directionalLightShadows:{value:[],properties:{shadowIntensity:1,shadowBias:{},shadowNormalBias:{},shadowRadius:{},shadowMapSize:{}}},directionalShadowMap:{value:[]},directionalShadowMatrix:{value:[]},spotLights:{value:[],properties:{color:{},position:{},direction:{},distance:{},coneCos:{},penumbraCos:{},decay:{}}},spotLightShadows:{value:[],properties:{shadowIntensity:1,shadowBias:{},shadowNormalBias:{},shadowRadius:{},shadowMapSize:{}}},spotLightMap:{value:[]},spotShadowMap:{value:[]},spotLightMatrix:{value:[]},pointLights:{value:[],properties:{color:{},position:{},decay:{},distance:{}}},pointLightShadows:{value:[],properties:{shadowIntensity:1,shadowBias:{},shadowNormalBias:{},shadowRadius:{},shadowMapSize:{},shadowCameraNear:{},shadowCameraFar:{}}},pointShadowMap:{value:[]},pointShadowMatrix:{value:[]},hemisphereLights:{value:[],properties:{direction:{},skyColor:{},groundColor:{}}},rectAreaLights:{value:[],properties:{color:{},position:{},width:{},height:{}}},ltc_1:{value:null},ltc_2:{value:null}},points:{diffuse:{value:new oe(16777215)},opacity:{value:1},size:{value:1},scale:{value:1},map:{value:null},alphaMap:{value:null},alphaMapTransform:{value:new le},alphaTest:{value:0},uvTransform:{value:new le}},sprite:{diffuse:{value:new oe(16777215)},opacity:{value:1},center:{value:new gt(.5,.5)},rotation:{value:0},map:{value:null},mapTransform:{value:new le},alphaMap:{value:null},alphaMapTransform:{value:new le},alphaTest:{value:0}}},Nn={basic:{uniforms:Dn([St.common,St.specularmap,St.envmap,St.aomap,St.lightmap,St.fog]),vertexShader:ce.meshbasic_vert,fragmentShader:ce.meshbasic_frag},lambert:{uniforms:Dn([St.common,St.specularmap,St.envmap,St.aomap,St.lightmap,St.emissivemap,St.bumpmap,St.normalmap,St.displacementmap,St.fog,St.lights,{emissive:{value:new oe(0)}}]),vertexShader:ce.meshlambert_vert,fragmentShader:ce.meshlambert_frag},phong:{uniforms:Dn([St.common,St.specularmap,St.envmap,St.aomap,St.lightmap,St.emissivemap,St.bumpmap,St.normalmap,St.displacementmap,St.fog,St.lights,{emissive:{value:new oe(0)},specular:{value:new oe(1118481)},shininess:{value:30}}]),vertexShader:ce.meshphong_vert,fragmentShader:ce.meshphong_frag},standard:{uniforms:Dn([St.common,St.envmap,St.aomap,St.lightmap,St.emissivemap,St.bumpmap,St.normalmap,St.displacementmap,St.roughnessmap,St.metalnessmap,St.fog,St.lights,{emissive:{value:new oe(0)},roughness:{value:1},metalness:{value:0},envMapIntensity:{value:1}}]),vertexShader:ce.meshphysical_vert,fragmentShader:ce.meshphysical_frag},toon:{uniforms:Dn([St.common,St.aomap,St.lightmap,St.emissivemap,St.bumpmap,St.normalmap,St.displacementmap,St.gradientmap,St.fog,St.lights,{emissive:{value:new oe(0)}}]),vertexShader:ce.meshtoon_vert,fragmentShader:ce.meshtoon_frag},matcap:{uniforms:Dn([St.common,St.bumpmap,St.normalmap,St.displacementmap,St.fog,{matcap:{value:null}}]),vertexShader:ce.meshmatcap_vert,fragmentShader:ce.meshmatcap_frag},points:{uniforms:Dn([St.points,St.fog]),vertexShader:ce.points_vert,fragmentShader:ce.points_frag},dashed:{uniforms:Dn([St.common,St.fog,{scale:{value:1},dashSize:{value:1},totalSize:{value:2}}]),vertexShader:ce.linedashed_vert,fragmentShader:ce.linedashed_frag},depth:{uniforms:Dn([St.common,St.displacementmap]),vertexShader:ce.depth_vert,fragmentShader:ce.depth_frag},normal:{uniforms:Dn([St.common,St.bumpmap,St.normalmap,St.displacementmap,{opacity:{value:1}}]),vertexShader:ce.meshnormal_vert,fragmentShader:ce.meshnormal_frag},sprite:{uniforms:Dn([St.sprite,St.fog]),vertexShader:ce.sprite_vert,fragmentShader:ce.sprite_frag},background:{uniforms:{uvTransform:{value:new le},t2D:{value:null},backgroundIntensity:{value:1}},vertexShader:ce.background_vert,fragmentShader:ce.background_frag},backgroundCube:{uniforms:{envMap:{value:null},flipEnvMap:{value:-1},backgroundBlurriness:{value:0},backgroundIntensity:{value:1},backgroundRotation:{value:new le}},vertexShader:ce.backgroundCube_vert,fragmentShader:ce.backgroundCube_frag},cube:{uniforms:{tCube:{value:null},tFlip:{value:-1},opacity:{value:1}},vertexShader:ce.cube_vert,fragmentShader:ce.cube_frag},equirect:{uniforms:{tEquirect:{value:null}},vertexShader:ce.equirect_vert,fragmentShader:ce.equirect_frag},distanceRGBA:{uniforms:Dn([St.common,St.displacementmap,{referencePosition:{value:new D},nearDistance:{value:1},farDistance:{value:1e3}}]),vertexShader:ce.distanceRGBA_vert,fragmentShader:ce.distanceRGBA_frag},shadow:{uniforms:Dn([St.lights,St.fog,{color:{value:new oe(0)},opacity:{value:1}}]),vertexShader:ce.shadow_vert,fragmentShader:ce.shadow_frag}};Nn.physical={uniforms:Dn([Nn.standard.uniforms,{clearcoat:{value:0},clearcoatMap:{value:null},clearcoatMapTransform:{value:new le},clearcoatNormalMap:{value:null},clearcoatNormalMapTransform:{value:new le},clearcoatNormalScale:{value:new gt(1,1)},clearcoatRoughness:{value:0},clearcoatRoughnessMap:{value:null},clearcoatRoughnessMapTransform:{value:new le},dispersion:{value:0},iridescence:{value:0},iridescenceMap:{value:null},iridescenceMapTransform:{value:new le},iridescenceIOR:{value:1.3},iridescenceThicknessMinimum:{value:100},iridescenceThicknessMaximum:{value:400},iridescenceThicknessMap:{value:null},iridescenceThicknessMapTransform:{value:new le},sheen:{value:0},sheenColor:{value:new oe(0)},sheenColorMap:{value:null},sheenColorMapTransform:{value:new le},sheenRoughness:{value:1},sheenRoughnessMap:{value:null},sheenRoughnessMapTransform:{value:new le},transmission:{value:0},transmissionMap:{value:null},transmissionMapTransform:{value:new le},transmissionSamplerSize:{value:new gt},transmissionSamplerMap:{value:null},thickness:{value:0},thicknessMap:{value:null},thicknessMapTransform:{value:new le},attenuationDistance:{value:0},attenuationColor:{value:new oe(0)},specularColor:{value:new oe(1,1,1)},specularColorMap:{value:null},specularColorMapTransform:{value:new le},specularIntensity:{value:1},specularIntensityMap:{value:null},specularIntensityMapTransform:{value:new le},anisotropyVector:{value:new gt},anisotropyMap:{value:null},anisotropyMapTransform:{value:new le}}]),vertexShader:ce.meshphysical_vert,fragmentShader:ce.meshphysical_frag};var nl={r:0,b:0,g:0},Qs=new ki,Sb=new Ge;function bb(i,t,e,n,s,r,o){let a=new oe(0),l=r===!0?0:1,c,u,d=null,h=0,f=null;function g(b){let y=b.isScene===!0?b.background:null;return y&&y.isTexture&&(y=(b.backgroundBlurriness>0?e:t).get(y)),y}function _(b){let y=!1,v=g(b);v===null?p(a,l):v&&v.isColor&&(p(v,1),y=!0);let N=i.xr.getEnvironmentBlendMode();N==="additive"?n.buffers.color.setClear(0,0,0,1,o):N==="alpha-blend"&&n.buffers.color.setClear(0,0,0,0,o),(i.autoClear||y)&&(n.buffers.depth.setTest(!0),n.buffers.depth.setMask(!0),n.buffers.color.setMask(!0),i.clear(i.autoClearColor,i.autoClearDepth,i.autoClearStencil))}function m(b,y){let v=g(y);v&&(v.isCubeTexture||v.mapping===nc)?(u===void 0&&(u=new _e(new Vi(1,1,1),new hi({name:"BackgroundCubeMaterial",uniforms:ho(Nn.backgroundCube.uniforms),vertexShader:Nn.backgroundCube.vertexShader,fragmentShader:Nn.backgroundCube.fragmentShader,side:zn,depthTest:!1,depthWrite:!1,fog:!1})),u.geometry.deleteAttribute("normal"),u.geometry.deleteAttribute("uv"),u.onBeforeRender=function(N,P,R){this.matrixWorld.copyPosition(R.matrixWorld)},Object.defineProperty(u.material,"envMap",{get:function(){return this.uniforms.envMap.value}}),s.update(u)),Qs.copy(y.backgroundRotation),Qs.x*=-1,Qs.y*=-1,Qs.z*=-1,v.isCubeTexture&&v.isRenderTargetTexture===!1&&(Qs.y*=-1,Qs.z*=-1),u.material.uniforms.envMap.value=v,u.material.uniforms.flipEnvMap.value=v.isCubeTexture&&v.isRenderTargetTexture===!1?-1:1,u.material.uniforms.backgroundBlurriness.value=y.backgroundBlurriness,u.material.uniforms.backgroundIntensity.value=y.backgroundIntensity,u.material.uniforms.backgroundRotation.value.setFromMatrix4(Sb.makeRotationFromEuler(Qs)),u.material.toneMapped=ve.getTransfer(v.colorSpace)!==Le,(d!==v||h!==v.version||f!==i.toneMapping)&&(u.material.needsUpdate=!0,d=v,h=v.version,f=i.toneMapping),u.layers.enableAll(),b.unshift(u,u.geometry,u.material,0,0,null)):v&&v.isTexture&&(c===void 0&&(c=new _e(new uo(2,2),new hi({name:"BackgroundMaterial",uniforms:ho(Nn.background.uniforms),vertexShader:Nn.background.vertexShader,fragmentShader:Nn.background.fragmentShader,side:Ds,depthTest:!1,depthWrite:!1,fog:!1})),c.geometry.deleteAttribute("normal"),Object.defineProperty(c.material,"map",{get:function(){return this.uniforms.t2D.value}}),s.update(c)),c.material.uniforms.t2D.value=v,c.material.uniforms.backgroundIntensity.value=y.backgroundIntensity,c.material.toneMapped=ve.getTransfer(v.colorSpace)!==Le,v.matrixAutoUpdate===!0&&v.updateMatrix(),c.material.uniforms.uvTransform.value.copy(v.matrix),(d!==v||h!==v.version||f!==i.toneMapping)&&(c.material.needsUpdate=!0,d=v,h=v.version,f=i.toneMapping),c.layers.enableAll(),b.unshift(c,c.geometry,c.material,0,0,null))}function p(b,y){b.getRGB(nl,Wg(i)),n.buffers.color.setClear(nl.r,nl.g,nl.b,y,o)}return{getClearColor:function(){return a},setClearColor:function(b,y=1){a.set(b),l=y,p(a,l)},getClearAlpha:function(){return l},setClearAlpha:function(b){l=b,p(a,l)},render:_,addToRenderList:m}}function wb(i,t){let e=i.getParameter(i.MAX_VERTEX_ATTRIBS),n={},s=h(null),r=s,o=!1;function a(M,A,W,G,X){let Z=!1,Y=d(G,W,A);r!==Y&&(r=Y,c(r.object)),Z=f(M,G,W,X),Z&&g(M,G,W,X),X!==null&&t.update(X,i.ELEMENT_ARRAY_BUFFER),(Z||o)&&(o=!1,v(M,A,W,G),X!==null&&i.bindBuffer(i.ELEMENT_ARRAY_BUFFER,t.get(X).buffer))}function l(){return i.createVertexArray()}function c(M){return i.bindVertexArray(M)}function u(M){return i.deleteVertexArray(M)}function d(M,A,W){let G=W.wireframe===!0,X=n[M.id];X===void 0&&(X={},n[M.id]=X);let Z=X[A.id];Z===void 0&&(Z={},X[A.id]=Z);let Y=Z[G];return Y===void 0&&(Y=h(l()),Z[G]=Y),Y}function h(M){let A=[],W=[],G=[];for(let X=0;X<e;X++)A[X]=0,W[X]=0,G[X]=0;return{geometry:null,program:null,wireframe:!1,newAttributes:A,enabledAttributes:W,attributeDivisors:G,object:M,attributes:{},index:null}}function f(M,A,W,G){let X=r.attributes,Z=A.attributes,Y=0,nt=W.getAttributes();for(let Q in nt)if(nt[Q].location>=0){let at=X[Q],_t=Z[Q];if(_t===void 0&&(Q==="instanceMatrix"&&M.instanceMatrix&&(_t=M.instanceMatrix),Q==="instanceColor"&&M.instanceColor&&(_t=M.instanceColor)),at===void 0||at.attribute!==_t||_t&&at.data!==_t.data)return!0;Y++}return r.attributesNum!==Y||r.index!==G}function g(M,A,W,G){let X={},Z=A.attributes,Y=0,nt=W.getAttributes();for(let Q in nt)if(nt[Q].location>=0){let at=Z[Q];at===void 0&&(Q==="instanceMatrix"&&M.instanceMatrix&&(at=M.instanceMatrix),Q==="instanceColor"&&M.instanceColor&&(at=M.instanceColor));let _t={};_t.attribute=at,at&&at.data&&(_t.data=at.data),X[Q]=_t,Y++}r.attributes=X,r.attributesNum=Y,r.index=G}function _(){let M=r.newAttributes;for(let A=0,W=M.length;A<W;A++)M[A]=0}function m(M){p(M,0)}function p(M,A){let W=r.newAttributes,G=r.enabledAttributes,X=r.attributeDivisors;W[M]=1,G[M]===0&&(i.enableVertexAttribArray(M),G[M]=1),X[M]!==A&&(i.vertexAttribDivisor(M,A),X[M]=A)}function b(){let M=r.newAttributes,A=r.enabledAttributes;for(let W=0,G=A.length;W<G;W++)A[W]!==M[W]&&(i.disableVertexAttribArray(W),A[W]=0)}function y(M,A,W,G,X,Z,Y){Y===!0?i.vertexAttribIPointer(M,A,W,X,Z):i.vertexAttribPointer(M,A,W,G,X,Z)}function v(M,A,W,G){_();let X=G.attributes,Z=W.getAttributes(),Y=A.defaultAttributeValues;for(let nt in Z){let Q=Z[nt];if(Q.location>=0){let ft=X[nt];if(ft===void 0&&(nt==="instanceMatrix"&&M.instanceMatrix&&(ft=M.instanceMatrix),nt==="instanceColor"&&M.instanceColor&&(ft=M.instanceColor)),ft!==void 0){let at=ft.normalized,_t=ft.itemSize,pt=t.get(ft);if(pt===void 0)continue;let Zt=pt.buffer,J=pt.type,ht=pt.bytesPerElement,Ot=J===i.INT||J===i.UNSIGNED_INT||ft.gpuType===Ld;if(ft.isInterleavedBufferAttribute){let lt=ft.data,Ft=lt.stride,Yt=ft.offset;if(lt.isInstancedInterleavedBuffer){for(let Ut=0;Ut<Q.locationSize;Ut++)p(Q.location+Ut,lt.meshPerAttribute);M.isInstancedMesh!==!0&&G._maxInstanceCount===void 0&&(G._maxInstanceCount=lt.meshPerAttribute*lt.count)}else for(let Ut=0;Ut<Q.locationSize;Ut++)m(Q.location+Ut);i.bindBuffer(i.ARRAY_BUFFER,Zt);for(let Ut=0;Ut<Q.locationSize;Ut++)y(Q.location+Ut,_t/Q.locationSize,J,at,Ft*ht,(Yt+_t/Q.locationSize*Ut)*ht,Ot)}else{if(ft.isInstancedBufferAttribute){for(let lt=0;lt<Q.locationSize;lt++)p(Q.location+lt,ft.meshPerAttribute);M.isInstancedMesh!==!0&&G._maxInstanceCount===void 0&&(G._maxInstanceCount=ft.meshPerAttribute*ft.count)}else for(let lt=0;lt<Q.locationSize;lt++)m(Q.location+lt);i.bindBuffer(i.ARRAY_BUFFER,Zt);for(let lt=0;lt<Q.locationSize;lt++)y(Q.location+lt,_t/Q.locationSize,J,at,_t*ht,_t/Q.locationSize*lt*ht,Ot)}}else if(Y!==void 0){let at=Y[nt];if(at!==void 0)switch(at.length){case 2:i.vertexAttrib2fv(Q.location,at);break;case 3:i.vertexAttrib3fv(Q.location,at);break;case 4:i.vertexAttrib4fv(Q.location,at);break;default:i.vertexAttrib1fv(Q.location,at)}}}}b()}function N(){F();for(let M in n){let A=n[M];for(let W in A){let G=A[W];for(let X in G)u(G[X].object),delete G[X];delete A[W]}delete n[M]}}function P(M){if(n[M.id]===void 0)return;let A=n[M.id];for(let W in A){let G=A[W];for(let X in G)u(G[X].object),delete G[X];delete A[W]}delete n[M.id]}function R(M){for(let A in n){let W=n[A];if(W[M.id]===void 0)continue;let G=W[M.id];for(let X in G)u(G[X].object),delete G[X];delete W[M.id]}}function F(){E(),o=!0,r!==s&&(r=s,c(r.object))}function E(){s.geometry=null,s.program=null,s.wireframe=!1}return{setup:a,reset:F,resetDefaultState:E,dispose:N,releaseStatesOfGeometry:P,releaseStatesOfProgram:R,initAttributes:_,enableAttribute:m,disableUnusedAttributes:b}}function Eb(i,t,e){let n;function s(c){n=c}function r(c,u){i.drawArrays(n,c,u),e.update(u,n,1)}function o(c,u,d){d!==0&&(i.drawArraysInstanced(n,c,u,d),e.update(u,n,d))}function a(c,u,d){if(d===0)return;t.get("WEBGL_multi_draw").multiDrawArraysWEBGL(n,c,0,u,0,d);let f=0;for(let g=0;g<d;g++)f+=u[g];e.update(f,n,1)}function l(c,u,d,h){if(d===0)return;let f=t.get("WEBGL_multi_draw");if(f===null)for(let g=0;g<c.length;g++)o(c[g],u[g],h[g]);else{f.multiDrawArraysInstancedWEBGL(n,c,0,u,0,h,0,d);let g=0;for(let _=0;_<d;_++)g+=u[_]*h[_];e.update(g,n,1)}}this.setMode=s,this.render=r,this.renderInstances=o,this.renderMultiDraw=a,this.renderMultiDrawInstances=l}function Tb(i,t,e,n){let s;function r(){if(s!==void 0)return s;if(t.has("EXT_texture_filter_anisotropic")===!0){let R=t.get("EXT_texture_filter_anisotropic");s=i.getParameter(R.MAX_TEXTURE_MAX_ANISOTROPY_EXT)}else s=0;return s}function o(R){return!(R!==bi&&n.convert(R)!==i.getParameter(i.IMPLEMENTATION_COLOR_READ_FORMAT))}function a(R){let F=R===sa&&(t.has("EXT_color_buffer_half_float")||t.has("EXT_color_buffer_float"));return!(R!==cs&&n.convert(R)!==i.getParameter(i.IMPLEMENTATION_COLOR_READ_TYPE)&&R!==os&&!F)}function l(R){if(R==="highp"){if(i.getShaderPrecisionFormat(i.VERTEX_SHADER,i.HIGH_FLOAT).precision>0&&i.getShaderPrecisionFormat(i.FRAGMENT_SHADER,i.HIGH_FLOAT).precision>0)return"highp";R="mediump"}return R==="mediump"&&i.getShaderPrecisionFormat(i.VERTEX_SHADER,i.MEDIUM_FLOAT).precision>0&&i.getShaderPrecisionFormat(i.FRAGMENT_SHADER,i.MEDIUM_FLOAT).precision>0?"mediump":"lowp"}let c=e.precision!==void 0?e.precision:"highp",u=l(c);u!==c&&(console.warn("THREE.WebGLRenderer:",c,"not supported, using",u,"instead."),c=u);let d=e.logarithmicDepthBuffer===!0,h=e.reverseDepthBuffer===!0&&t.has("EXT_clip_control"),f=i.getParameter(i.MAX_TEXTURE_IMAGE_UNITS),g=i.getParameter(i.MAX_VERTEX_TEXTURE_IMAGE_UNITS),_=i.getParameter(i.MAX_TEXTURE_SIZE),m=i.getParameter(i.MAX_CUBE_MAP_TEXTURE_SIZE),p=i.getParameter(i.MAX_VERTEX_ATTRIBS),b=i.getParameter(i.MAX_VERTEX_UNIFORM_VECTORS),y=i.getParameter(i.MAX_VARYING_VECTORS),v=i.getParameter(i.MAX_FRAGMENT_UNIFORM_VECTORS),N=g>0,P=i.getParameter(i.MAX_SAMPLES);return{isWebGL2:!0,getMaxAnisotropy:r,getMaxPrecision:l,textureFormatReadable:o,textureTypeReadable:a,precision:c,logarithmicDepthBuffer:d,reverseDepthBuffer:h,maxTextures:f,maxVertexTextures:g,maxTextureSize:_,maxCubemapSize:m,maxAttributes:p,maxVertexUniforms:b,maxVaryings:y,maxFragmentUniforms:v,vertexTextures:N,maxSamples:P}}function Ab(i){let t=this,e=null,n=0,s=!1,r=!1,o=new Jn,a=new le,l={value:null,needsUpdate:!1};this.uniform=l,this.numPlanes=0,this.numIntersection=0,this.init=function(d,h){let f=d.length!==0||h||n!==0||s;return s=h,n=d.length,f},this.beginShadows=function(){r=!0,u(null)},this.endShadows=function(){r=!1},this.setGlobalState=function(d,h){e=u(d,h,0)},this.setState=function(d,h,f){let g=d.clippingPlanes,_=d.clipIntersection,m=d.clipShadows,p=i.get(d);if(!s||g===null||g.length===0||r&&!m)r?u(null):c();else{let b=r?0:n,y=b*4,v=p.clippingState||null;l.value=v,v=u(g,h,y,f);for(let N=0;N!==y;++N)v[N]=e[N];p.clippingState=v,this.numIntersection=_?this.numPlanes:0,this.numPlanes+=b}};function c(){l.value!==e&&(l.value=e,l.needsUpdate=n>0),t.numPlanes=n,t.numIntersection=0}function u(d,h,f,g){let _=d!==null?d.length:0,m=null;if(_!==0){if(m=l.value,g!==!0||m===null){let p=f+_*4,b=h.matrixWorldInverse;a.getNormalMatrix(b),(m===null||m.length<p)&&(m=new Float32Array(p));for(let y=0,v=f;y!==_;++y,v+=4)o.copy(d[y]).applyMatrix4(b,a),o.normal.toArray(m,v),m[v+3]=o.constant}l.value=m,l.needsUpdate=!0}return t.numPlanes=_,t.numIntersection=0,m}}function Cb(i){let t=new WeakMap;function e(o,a){return a===fu?o.mapping=ro:a===pu&&(o.mapping=oo),o}function n(o){if(o&&o.isTexture){let a=o.mapping;if(a===fu||a===pu)if(t.has(o)){let l=t.get(o).texture;return e(l,o.mapping)}else{let l=o.image;if(l&&l.height>0){let c=new Zu(l.height);return c.fromEquirectangularTexture(i,o),t.set(o,c),o.addEventListener("dispose",s),e(c.texture,o.mapping)}else return null}}return o}function s(o){let a=o.target;a.removeEventListener("dispose",s);let l=t.get(a);l!==void 0&&(t.delete(a),l.dispose())}function r(){t=new WeakMap}return{get:n,dispose:r}}var fo=class extends Cl{constructor(t=-1,e=1,n=1,s=-1,r=.1,o=2e3){super(),this.isOrthographicCamera=!0,this.type="OrthographicCamera",this.zoom=1,this.view=null,this.left=t,this.right=e,this.top=n,this.bottom=s,this.near=r,this.far=o,this.updateProjectionMatrix()}copy(t,e){return super.copy(t,e),this.left=t.left,this.right=t.right,this.top=t.top,this.bottom=t.bottom,this.near=t.near,this.far=t.far,this.zoom=t.zoom,this.view=t.view===null?null:Object.assign({},t.view),this}setViewOffset(t,e,n,s,r,o){this.view===null&&(this.view={enabled:!0,fullWidth:1,fullHeight:1,offsetX:0,offsetY:0,width:1,height:1}),this.view.enabled=!0,this.view.fullWidth=t,this.view.fullHeight=e,this.view.offsetX=n,this.view.offsetY=s,this.view.width=r,this.view.height=o,this.updateProjectionMatrix()}clearViewOffset(){this.view!==null&&(this.view.enabled=!1),this.updateProjectionMatrix()}updateProjectionMatrix(){let t=(this.right-this.left)/(2*this.zoom),e=(this.top-this.bottom)/(2*this.zoom),n=(this.right+this.left)/2,s=(this.top+this.bottom)/2,r=n-t,o=n+t,a=s+e,l=s-e;if(this.view!==null&&this.view.enabled){let c=(this.right-this.left)/this.view.fullWidth/this.zoom,u=(this.top-this.bottom)/this.view.fullHeight/this.zoom;r+=c*this.view.offsetX,o=r+c*this.view.width,a-=u*this.view.offsetY,l=a-u*this.view.height}this.projectionMatrix.makeOrthographic(r,o,a,l,this.near,this.far,this.coordinateSystem),this.projectionMatrixInverse.copy(this.projectionMatrix).invert()}toJSON(t){let e=super.toJSON(t);return e.object.zoom=this.zoom,e.object.left=this.left,e.object.right=this.right,e.object.top=this.top,e.object.bottom=this.bottom,e.object.near=this.near,e.object.far=this.far,this.view!==null&&(e.object.view=Object.assign({},this.view)),e}},Kr=4,Wm=[.125,.215,.35,.446,.526,.582],ir=20,qh=new fo,Xm=new oe,Yh=null,$h=0,Zh=0,Jh=!1,er=(1+Math.sqrt(5))/2,Jr=1/er,qm=[new D(-er,Jr,0),new D(er,Jr,0),new D(-Jr,0,er),new D(Jr,0,er),new D(0,er,-Jr),new D(0,er,Jr),new D(-1,1,-1),new D(1,1,-1),new D(-1,1,1),new D(1,1,1)],Pl=class{constructor(t){this._renderer=t,this._pingPongRenderTarget=null,this._lodMax=0,this._cubeSize=0,this._lodPlanes=[],this._sizeLods=[],this._sigmas=[],this._blurMaterial=null,this._cubemapMaterial=null,this._equirectMaterial=null,this._compileMaterial(this._blurMaterial)}fromScene(t,e=0,n=.1,s=100){Yh=this._renderer.getRenderTarget(),$h=this._renderer.getActiveCubeFace(),Zh=this._renderer.getActiveMipmapLevel(),Jh=this._renderer.xr.enabled,this._renderer.xr.enabled=!1,this._setSize(256);let r=this._allocateTargets();return r.depthBuffer=!0,this._sceneToCubeUV(t,n,s,r),e>0&&this._blur(r,0,0,e),this._applyPMREM(r),this._cleanup(r),r}fromEquirectangular(t,e=null){return this._fromTexture(t,e)}fromCubemap(t,e=null){return this._fromTexture(t,e)}compileCubemapShader(){this._cubemapMaterial===null&&(this._cubemapMaterial=Zm(),this._compileMaterial(this._cubemapMaterial))}compileEquirectangularShader(){this._equirectMaterial===null&&(this._equirectMaterial=$m(),this._compileMaterial(this._equirectMaterial))}dispose(){this._dispose(),this._cubemapMaterial!==null&&this._cubemapMaterial.dispose(),this._equirectMaterial!==null&&this._equirectMaterial.dispose()}_setSize(t){this._lodMax=Math.floor(Math.log2(t)),this._cubeSize=Math.pow(2,this._lodMax)}_dispose(){this._blurMaterial!==null&&this._blurMaterial.dispose(),this._pingPongRenderTarget!==null&&this._pingPongRenderTarget.dispose();for(let t=0;t<this._lodPlanes.length;t++)this._lodPlanes[t].dispose()}_cleanup(t){this._renderer.setRenderTarget(Yh,$h,Zh),this._renderer.xr.enabled=Jh,t.scissorTest=!1,il(t,0,0,t.width,t.height)}_fromTexture(t,e){t.mapping===ro||t.mapping===oo?this._setSize(t.image.length===0?16:t.image[0].width||t.image[0].image.width):this._setSize(t.image.width/4),Yh=this._renderer.getRenderTarget(),$h=this._renderer.getActiveCubeFace(),Zh=this._renderer.getActiveMipmapLevel(),Jh=this._renderer.xr.enabled,this._renderer.xr.enabled=!1;let n=e||this._allocateTargets();return this._textureToCubeUV(t,n),this._applyPMREM(n),this._cleanup(n),n}_allocateTargets(){let t=3*Math.max(this._cubeSize,112),e=4*this._cubeSize,n={magFilter:Oi,minFilter:Oi,generateMipmaps:!1,type:sa,format:bi,colorSpace:_o,depthBuffer:!1},s=Ym(t,e,n);if(this._pingPongRenderTarget===null||this._pingPongRenderTarget.width!==t||this._pingPongRenderTarget.height!==e){this._pingPongRenderTarget!==null&&this._dispose(),this._pingPongRenderTarget=Ym(t,e,n);let{_lodMax:r}=this;({sizeLods:this._sizeLods,lodPlanes:this._lodPlanes,sigmas:this._sigmas}=Rb(r)),this._blurMaterial=Pb(r,t,e)}return s}_compileMaterial(t){let e=new _e(this._lodPlanes[0],t);this._renderer.compile(e,qh)}_sceneToCubeUV(t,e,n,s){let a=new Un(90,1,e,n),l=[1,-1,1,1,1,1],c=[1,1,1,-1,-1,-1],u=this._renderer,d=u.autoClear,h=u.toneMapping;u.getClearColor(Xm),u.toneMapping=Is,u.autoClear=!1;let f=new ds({name:"PMREM.Background",side:zn,depthWrite:!1,depthTest:!1}),g=new _e(new Vi,f),_=!1,m=t.background;m?m.isColor&&(f.color.copy(m),t.background=null,_=!0):(f.color.copy(Xm),_=!0);for(let p=0;p<6;p++){let b=p%3;b===0?(a.up.set(0,l[p],0),a.lookAt(c[p],0,0)):b===1?(a.up.set(0,0,l[p]),a.lookAt(0,c[p],0)):(a.up.set(0,l[p],0),a.lookAt(0,0,c[p]));let y=this._cubeSize;il(s,b*y,p>2?y:0,y,y),u.setRenderTarget(s),_&&u.render(g,a),u.render(t,a)}g.geometry.dispose(),g.material.dispose(),u.toneMapping=h,u.autoClear=d,t.background=m}_textureToCubeUV(t,e){let n=this._renderer,s=t.mapping===ro||t.mapping===oo;s?(this._cubemapMaterial===null&&(this._cubemapMaterial=Zm()),this._cubemapMaterial.uniforms.flipEnvMap.value=t.isRenderTargetTexture===!1?-1:1):this._equirectMaterial===null&&(this._equirectMaterial=$m());let r=s?this._cubemapMaterial:this._equirectMaterial,o=new _e(this._lodPlanes[0],r),a=r.uniforms;a.envMap.value=t;let l=this._cubeSize;il(e,0,0,3*l,2*l),n.setRenderTarget(e),n.render(o,qh)}_applyPMREM(t){let e=this._renderer,n=e.autoClear;e.autoClear=!1;let s=this._lodPlanes.length;for(let r=1;r<s;r++){let o=Math.sqrt(this._sigmas[r]*this._sigmas[r]-this._sigmas[r-1]*this._sigmas[r-1]),a=qm[(s-r-1)%qm.length];this._blur(t,r-1,r,o,a)}e.autoClear=n}_blur(t,e,n,s,r){let o=this._pingPongRenderTarget;this._halfBlur(t,o,e,n,s,"latitudinal",r),this._halfBlur(o,t,n,n,s,"longitudinal",r)}_halfBlur(t,e,n,s,r,o,a){let l=this._renderer,c=this._blurMaterial;o!=="latitudinal"&&o!=="longitudinal"&&console.error("blur direction must be either latitudinal or longitudinal!");let u=3,d=new _e(this._lodPlanes[s],c),h=c.uniforms,f=this._sizeLods[n]-1,g=isFinite(r)?Math.PI/(2*f):2*Math.PI/(2*ir-1),_=r/g,m=isFinite(r)?1+Math.floor(u*_):ir;m>ir&&console.warn(`sigmaRadians, ${r}, is too large and will clip, as it requested ${m} samples when the maximum is set to ${ir}`);let p=[],b=0;for(let R=0;R<ir;++R){let F=R/_,E=Math.exp(-F*F/2);p.push(E),R===0?b+=E:R<m&&(b+=2*E)}for(let R=0;R<p.length;R++)p[R]=p[R]/b;h.envMap.value=t.texture,h.samples.value=m,h.weights.value=p,h.latitudinal.value=o==="latitudinal",a&&(h.poleAxis.value=a);let{_lodMax:y}=this;h.dTheta.value=g,h.mipInt.value=y-n;let v=this._sizeLods[s],N=3*v*(s>y-Kr?s-y+Kr:0),P=4*(this._cubeSize-v);il(e,N,P,3*v,2*v),l.setRenderTarget(e),l.render(d,qh)}};function Rb(i){let t=[],e=[],n=[],s=i,r=i-Kr+1+Wm.length;for(let o=0;o<r;o++){let a=Math.pow(2,s);e.push(a);let l=1/a;o>i-Kr?l=Wm[o-i+Kr-1]:o===0&&(l=0),n.push(l);let c=1/(a-2),u=-c,d=1+c,h=[u,u,d,u,d,d,u,u,d,d,u,d],f=6,g=6,_=3,m=2,p=1,b=new Float32Array(_*g*f),y=new Float32Array(m*g*f),v=new Float32Array(p*g*f);for(let P=0;P<f;P++){let R=P%3*2/3-1,F=P>2?0:-1,E=[R,F,0,R+2/3,F,0,R+2/3,F+1,0,R,F,0,R+2/3,F+1,0,R,F+1,0];b.set(E,_*g*P),y.set(h,m*g*P);let M=[P,P,P,P,P,P];v.set(M,p*g*P)}let N=new we;N.setAttribute("position",new Kn(b,_)),N.setAttribute("uv",new Kn(y,m)),N.setAttribute("faceIndex",new Kn(v,p)),t.push(N),s>Kr&&s--}return{lodPlanes:t,sizeLods:e,sigmas:n}}function Ym(i,t,e){let n=new us(i,t,e);return n.texture.mapping=nc,n.texture.name="PMREM.cubeUv",n.scissorTest=!0,n}function il(i,t,e,n,s){i.viewport.set(t,e,n,s),i.scissor.set(t,e,n,s)}function Pb(i,t,e){let n=new Float32Array(ir),s=new D(0,1,0);return new hi({name:"SphericalGaussianBlur",defines:{n:ir,CUBEUV_TEXEL_WIDTH:1/t,CUBEUV_TEXEL_HEIGHT:1/e,CUBEUV_MAX_MIP:`${i}.0`},uniforms:{envMap:{value:null},samples:{value:1},weights:{value:n},latitudinal:{value:!1},dTheta:{value:0},mipInt:{value:0},poleAxis:{value:s}},vertexShader:zd(),fragmentShader:`
+
+			precision mediump float;
+			precision mediump int;
+
+			varying vec3 vOutputDirection;
+
+			uniform sampler2D envMap;
+			uniform int samples;
+			uniform float weights[ n ];
+			uniform bool latitudinal;
+			uniform float dTheta;
+			uniform float mipInt;
+			uniform vec3 poleAxis;
+
+			#define ENVMAP_TYPE_CUBE_UV
+			#include <cube_uv_reflection_fragment>
+
+			vec3 getSample( float theta, vec3 axis ) {
+
+				float cosTheta = cos( theta );
+				// Rodrigues' axis-angle rotation
+				vec3 sampleDirection = vOutputDirection * cosTheta
+					+ cross( axis, vOutputDirection ) * sin( theta )
+					+ axis * dot( axis, vOutputDirection ) * ( 1.0 - cosTheta );
+
+				return bilinearCubeUV( envMap, sampleDirection, mipInt );
+
+			}
+
+			void main() {
+
+				vec3 axis = latitudinal ? poleAxis : cross( poleAxis, vOutputDirection );
+
+				if ( all( equal( axis, vec3( 0.0 ) ) ) ) {
+
+					axis = vec3( vOutputDirection.z, 0.0, - vOutputDirection.x );
+
+				}
+
+				axis = normalize( axis );
+
+				gl_FragColor = vec4( 0.0, 0.0, 0.0, 1.0 );
+				gl_FragColor.rgb += weights[ 0 ] * getSample( 0.0, axis );
+
+				for ( int i = 1; i < n; i++ ) {
+
+					if ( i >= samples ) {
+
+						break;
+
+					}
+
+					float theta = dTheta * float( i );
+					gl_FragColor.rgb += weights[ i ] * getSample( -1.0 * theta, axis );
+					gl_FragColor.rgb += weights[ i ] * getSample( theta, axis );
+
+				}
+
+			}
+		`,blending:Ps,depthTest:!1,depthWrite:!1})}function $m(){return new hi({name:"EquirectangularToCubeUV",uniforms:{envMap:{value:null}},vertexShader:zd(),fragmentShader:`
+
+			precision mediump float;
+			precision mediump int;
+
+			varying vec3 vOutputDirection;
+
+			uniform sampler2D envMap;
+
+			#include <common>
+
+			void main() {
+
+				vec3 outputDirection = normalize( vOutputDirection );
+				vec2 uv = equirectUv( outputDirection );
+
+				gl_FragColor = vec4( texture2D ( envMap, uv ).rgb, 1.0 );
+
+			}
+		`,blending:Ps,depthTest:!1,depthWrite:!1})}function Zm(){return new hi({name:"CubemapToCubeUV",uniforms:{envMap:{value:null},flipEnvMap:{value:-1}},vertexShader:zd(),fragmentShader:`
+
+			precision mediump float;
+			precision mediump int;
+
+			uniform float flipEnvMap;
+
+			varying vec3 vOutputDirection;
+
+			uniform samplerCube envMap;
+
+			void main() {
+
+				gl_FragColor = textureCube( envMap, vec3( flipEnvMap * vOutputDirection.x, vOutputDirection.yz ) );
+
+			}
+		`,blending:Ps,depthTest:!1,depthWrite:!1})}function zd(){return`
+
+		precision mediump float;
+		precision mediump int;
+
+		attribute float faceIndex;
+
+		varying vec3 vOutputDirection;
+
+		// RH coordinate system; PMREM face-indexing convention
+		vec3 getDirection( vec2 uv, float face ) {
+
+			uv = 2.0 * uv - 1.0;
+
+			vec3 direction = vec3( uv, 1.0 );
+
+			if ( face == 0.0 ) {
+
+				direction = direction.zyx; // ( 1, v, u ) pos x
+
+			} else if ( face == 1.0 ) {
+
+				direction = direction.xzy;
+				direction.xz *= -1.0; // ( -u, 1, -v ) pos y
+
+			} else if ( face == 2.0 ) {
+
+				direction.x *= -1.0; // ( -u, v, 1 ) pos z
+
+			} else if ( face == 3.0 ) {
+
+				direction = direction.zyx;
+				direction.xz *= -1.0; // ( -1, v, -u ) neg x
+
+			} else if ( face == 4.0 ) {
+
+				direction = direction.xzy;
+				direction.xy *= -1.0; // ( -u, -1, v ) neg y
+
+			} else if ( face == 5.0 ) {
+
+				direction.z *= -1.0; // ( u, v, -1 ) neg z
+
+			}
+
+			return direction;
+
+		}
+
+		void main() {
+
+			vOutputDirection = getDirection( uv, faceIndex );
+			gl_Position = vec4( position, 1.0 );
+
+		}
+	`}function Ib(i){let t=new WeakMap,e=null;function n(a){if(a&&a.isTexture){let l=a.mapping,c=l===fu||l===pu,u=l===ro||l===oo;if(c||u){let d=t.get(a),h=d!==void 0?d.texture.pmremVersion:0;if(a.isRenderTargetTexture&&a.pmremVersion!==h)return e===null&&(e=new Pl(i)),d=c?e.fromEquirectangular(a,d):e.fromCubemap(a,d),d.texture.pmremVersion=a.pmremVersion,t.set(a,d),d.texture;if(d!==void 0)return d.texture;{let f=a.image;return c&&f&&f.height>0||u&&f&&s(f)?(e===null&&(e=new Pl(i)),d=c?e.fromEquirectangular(a):e.fromCubemap(a),d.texture.pmremVersion=a.pmremVersion,t.set(a,d),a.addEventListener("dispose",r),d.texture):null}}}return a}function s(a){let l=0,c=6;for(let u=0;u<c;u++)a[u]!==void 0&&l++;return l===c}function r(a){let l=a.target;l.removeEventListener("dispose",r);let c=t.get(l);c!==void 0&&(t.delete(l),c.dispose())}function o(){t=new WeakMap,e!==null&&(e.dispose(),e=null)}return{get:n,dispose:o}}function Lb(i){let t={};function e(n){if(t[n]!==void 0)return t[n];let s;switch(n){case"WEBGL_depth_texture":s=i.getExtension("WEBGL_depth_texture")||i.getExtension("MOZ_WEBGL_depth_texture")||i.getExtension("WEBKIT_WEBGL_depth_texture");break;case"EXT_texture_filter_anisotropic":s=i.getExtension("EXT_texture_filter_anisotropic")||i.getExtension("MOZ_EXT_texture_filter_anisotropic")||i.getExtension("WEBKIT_EXT_texture_filter_anisotropic");break;case"WEBGL_compressed_texture_s3tc":s=i.getExtension("WEBGL_compressed_texture_s3tc")||i.getExtension("MOZ_WEBGL_compressed_texture_s3tc")||i.getExtension("WEBKIT_WEBGL_compressed_texture_s3tc");break;case"WEBGL_compressed_texture_pvrtc":s=i.getExtension("WEBGL_compressed_texture_pvrtc")||i.getExtension("WEBKIT_WEBGL_compressed_texture_pvrtc");break;default:s=i.getExtension(n)}return t[n]=s,s}return{has:function(n){return e(n)!==null},init:function(){e("EXT_color_buffer_float"),e("WEBGL_clip_cull_distance"),e("OES_texture_float_linear"),e("EXT_color_buffer_half_float"),e("WEBGL_multisampled_render_to_texture"),e("WEBGL_render_shared_exponent")},get:function(n){let s=e(n);return s===null&&Go("THREE.WebGLRenderer: "+n+" extension not supported."),s}}}function Db(i,t,e,n){let s={},r=new WeakMap;function o(d){let h=d.target;h.index!==null&&t.remove(h.index);for(let g in h.attributes)t.remove(h.attributes[g]);for(let g in h.morphAttributes){let _=h.morphAttributes[g];for(let m=0,p=_.length;m<p;m++)t.remove(_[m])}h.removeEventListener("dispose",o),delete s[h.id];let f=r.get(h);f&&(t.remove(f),r.delete(h)),n.releaseStatesOfGeometry(h),h.isInstancedBufferGeometry===!0&&delete h._maxInstanceCount,e.memory.geometries--}function a(d,h){return s[h.id]===!0||(h.addEventListener("dispose",o),s[h.id]=!0,e.memory.geometries++),h}function l(d){let h=d.attributes;for(let g in h)t.update(h[g],i.ARRAY_BUFFER);let f=d.morphAttributes;for(let g in f){let _=f[g];for(let m=0,p=_.length;m<p;m++)t.update(_[m],i.ARRAY_BUFFER)}}function c(d){let h=[],f=d.index,g=d.attributes.position,_=0;if(f!==null){let b=f.array;_=f.version;for(let y=0,v=b.length;y<v;y+=3){let N=b[y+0],P=b[y+1],R=b[y+2];h.push(N,P,P,R,R,N)}}else if(g!==void 0){let b=g.array;_=g.version;for(let y=0,v=b.length/3-1;y<v;y+=3){let N=y+0,P=y+1,R=y+2;h.push(N,P,P,R,R,N)}}else return;let m=new(Hg(h)?Al:Tl)(h,1);m.version=_;let p=r.get(d);p&&t.remove(p),r.set(d,m)}function u(d){let h=r.get(d);if(h){let f=d.index;f!==null&&h.version<f.version&&c(d)}else c(d);return r.get(d)}return{get:a,update:l,getWireframeAttribute:u}}function Ub(i,t,e){let n;function s(h){n=h}let r,o;function a(h){r=h.type,o=h.bytesPerElement}function l(h,f){i.drawElements(n,f,r,h*o),e.update(f,n,1)}function c(h,f,g){g!==0&&(i.drawElementsInstanced(n,f,r,h*o,g),e.update(f,n,g))}function u(h,f,g){if(g===0)return;t.get("WEBGL_multi_draw").multiDrawElementsWEBGL(n,f,0,r,h,0,g);let m=0;for(let p=0;p<g;p++)m+=f[p];e.update(m,n,1)}function d(h,f,g,_){if(g===0)return;let m=t.get("WEBGL_multi_draw");if(m===null)for(let p=0;p<h.length;p++)c(h[p]/o,f[p],_[p]);else{m.multiDrawElementsInstancedWEBGL(n,f,0,r,h,0,_,0,g);let p=0;for(let b=0;b<g;b++)p+=f[b]*_[b];e.update(p,n,1)}}this.setMode=s,this.setIndex=a,this.render=l,this.renderInstances=c,this.renderMultiDraw=u,this.renderMultiDrawInstances=d}function Nb(i){let t={geometries:0,textures:0},e={frame:0,calls:0,triangles:0,points:0,lines:0};function n(r,o,a){switch(e.calls++,o){case i.TRIANGLES:e.triangles+=a*(r/3);break;case i.LINES:e.lines+=a*(r/2);break;case i.LINE_STRIP:e.lines+=a*(r-1);break;case i.LINE_LOOP:e.lines+=a*r;break;case i.POINTS:e.points+=a*r;break;default:console.error("THREE.WebGLInfo: Unknown draw mode:",o);break}}function s(){e.calls=0,e.triangles=0,e.points=0,e.lines=0}return{memory:t,render:e,programs:null,autoReset:!0,reset:s,update:n}}function Fb(i,t,e){let n=new WeakMap,s=new De;function r(o,a,l){let c=o.morphTargetInfluences,u=a.morphAttributes.position||a.morphAttributes.normal||a.morphAttributes.color,d=u!==void 0?u.length:0,h=n.get(a);if(h===void 0||h.count!==d){let E=function(){R.dispose(),n.delete(a),a.removeEventListener("dispose",E)};h!==void 0&&h.texture.dispose();let f=a.morphAttributes.position!==void 0,g=a.morphAttributes.normal!==void 0,_=a.morphAttributes.color!==void 0,m=a.morphAttributes.position||[],p=a.morphAttributes.normal||[],b=a.morphAttributes.color||[],y=0;f===!0&&(y=1),g===!0&&(y=2),_===!0&&(y=3);let v=a.attributes.position.count*y,N=1;v>t.maxTextureSize&&(N=Math.ceil(v/t.maxTextureSize),v=t.maxTextureSize);let P=new Float32Array(v*N*4*d),R=new wl(P,v,N,d);R.type=os,R.needsUpdate=!0;let F=y*4;for(let M=0;M<d;M++){let A=m[M],W=p[M],G=b[M],X=v*N*4*M;for(let Z=0;Z<A.count;Z++){let Y=Z*F;f===!0&&(s.fromBufferAttribute(A,Z),P[X+Y+0]=s.x,P[X+Y+1]=s.y,P[X+Y+2]=s.z,P[X+Y+3]=0),g===!0&&(s.fromBufferAttribute(W,Z),P[X+Y+4]=s.x,P[X+Y+5]=s.y,P[X+Y+6]=s.z,P[X+Y+7]=0),_===!0&&(s.fromBufferAttribute(G,Z),P[X+Y+8]=s.x,P[X+Y+9]=s.y,P[X+Y+10]=s.z,P[X+Y+11]=G.itemSize===4?s.w:1)}}h={count:d,texture:R,size:new gt(v,N)},n.set(a,h),a.addEventListener("dispose",E)}if(o.isInstancedMesh===!0&&o.morphTexture!==null)l.getUniforms().setValue(i,"morphTexture",o.morphTexture,e);else{let f=0;for(let _=0;_<c.length;_++)f+=c[_];let g=a.morphTargetsRelative?1:1-f;l.getUniforms().setValue(i,"morphTargetBaseInfluence",g),l.getUniforms().setValue(i,"morphTargetInfluences",c)}l.getUniforms().setValue(i,"morphTargetsTexture",h.texture,e),l.getUniforms().setValue(i,"morphTargetsTextureSize",h.size)}return{update:r}}function Ob(i,t,e,n){let s=new WeakMap;function r(l){let c=n.render.frame,u=l.geometry,d=t.get(l,u);if(s.get(d)!==c&&(t.update(d),s.set(d,c)),l.isInstancedMesh&&(l.hasEventListener("dispose",a)===!1&&l.addEventListener("dispose",a),s.get(l)!==c&&(e.update(l.instanceMatrix,i.ARRAY_BUFFER),l.instanceColor!==null&&e.update(l.instanceColor,i.ARRAY_BUFFER),s.set(l,c))),l.isSkinnedMesh){let h=l.skeleton;s.get(h)!==c&&(h.update(),s.set(h,c))}return d}function o(){s=new WeakMap}function a(l){let c=l.target;c.removeEventListener("dispose",a),e.remove(c.instanceMatrix),c.instanceColor!==null&&e.remove(c.instanceColor)}return{update:r,dispose:o}}var Il=class extends li{constructor(t,e,n,s,r,o,a,l,c,u=to){if(u!==to&&u!==lo)throw new Error("DepthTexture format must be either THREE.DepthFormat or THREE.DepthStencilFormat");n===void 0&&u===to&&(n=or),n===void 0&&u===lo&&(n=ao),super(null,s,r,o,a,l,u,n,c),this.isDepthTexture=!0,this.image={width:t,height:e},this.magFilter=a!==void 0?a:wi,this.minFilter=l!==void 0?l:wi,this.flipY=!1,this.generateMipmaps=!1,this.compareFunction=null}copy(t){return super.copy(t),this.compareFunction=t.compareFunction,this}toJSON(t){let e=super.toJSON(t);return this.compareFunction!==null&&(e.compareFunction=this.compareFunction),e}},qg=new li,Jm=new Il(1,1),Yg=new wl,$g=new Yu,Zg=new Rl,Km=[],jm=[],Qm=new Float32Array(16),tg=new Float32Array(9),eg=new Float32Array(4);function xo(i,t,e){let n=i[0];if(n<=0||n>0)return i;let s=t*e,r=Km[s];if(r===void 0&&(r=new Float32Array(s),Km[s]=r),t!==0){n.toArray(r,0);for(let o=1,a=0;o!==t;++o)a+=e,i[o].toArray(r,a)}return r}function an(i,t){if(i.length!==t.length)return!1;for(let e=0,n=i.length;e<n;e++)if(i[e]!==t[e])return!1;return!0}function ln(i,t){for(let e=0,n=t.length;e<n;e++)i[e]=t[e]}function oc(i,t){let e=jm[t];e===void 0&&(e=new Int32Array(t),jm[t]=e);for(let n=0;n!==t;++n)e[n]=i.allocateTextureUnit();return e}function Bb(i,t){let e=this.cache;e[0]!==t&&(i.uniform1f(this.addr,t),e[0]=t)}function zb(i,t){let e=this.cache;if(t.x!==void 0)(e[0]!==t.x||e[1]!==t.y)&&(i.uniform2f(this.addr,t.x,t.y),e[0]=t.x,e[1]=t.y);else{if(an(e,t))return;i.uniform2fv(this.addr,t),ln(e,t)}}function kb(i,t){let e=this.cache;if(t.x!==void 0)(e[0]!==t.x||e[1]!==t.y||e[2]!==t.z)&&(i.uniform3f(this.addr,t.x,t.y,t.z),e[0]=t.x,e[1]=t.y,e[2]=t.z);else if(t.r!==void 0)(e[0]!==t.r||e[1]!==t.g||e[2]!==t.b)&&(i.uniform3f(this.addr,t.r,t.g,t.b),e[0]=t.r,e[1]=t.g,e[2]=t.b);else{if(an(e,t))return;i.uniform3fv(this.addr,t),ln(e,t)}}function Vb(i,t){let e=this.cache;if(t.x!==void 0)(e[0]!==t.x||e[1]!==t.y||e[2]!==t.z||e[3]!==t.w)&&(i.uniform4f(this.addr,t.x,t.y,t.z,t.w),e[0]=t.x,e[1]=t.y,e[2]=t.z,e[3]=t.w);else{if(an(e,t))return;i.uniform4fv(this.addr,t),ln(e,t)}}function Hb(i,t){let e=this.cache,n=t.elements;if(n===void 0){if(an(e,t))return;i.uniformMatrix2fv(this.addr,!1,t),ln(e,t)}else{if(an(e,n))return;eg.set(n),i.uniformMatrix2fv(this.addr,!1,eg),ln(e,n)}}function Gb(i,t){let e=this.cache,n=t.elements;if(n===void 0){if(an(e,t))return;i.uniformMatrix3fv(this.addr,!1,t),ln(e,t)}else{if(an(e,n))return;tg.set(n),i.uniformMatrix3fv(this.addr,!1,tg),ln(e,n)}}function Wb(i,t){let e=this.cache,n=t.elements;if(n===void 0){if(an(e,t))return;i.uniformMatrix4fv(this.addr,!1,t),ln(e,t)}else{if(an(e,n))return;Qm.set(n),i.uniformMatrix4fv(this.addr,!1,Qm),ln(e,n)}}function Xb(i,t){let e=this.cache;e[0]!==t&&(i.uniform1i(this.addr,t),e[0]=t)}function qb(i,t){let e=this.cache;if(t.x!==void 0)(e[0]!==t.x||e[1]!==t.y)&&(i.uniform2i(this.addr,t.x,t.y),e[0]=t.x,e[1]=t.y);else{if(an(e,t))return;i.uniform2iv(this.addr,t),ln(e,t)}}function Yb(i,t){let e=this.cache;if(t.x!==void 0)(e[0]!==t.x||e[1]!==t.y||e[2]!==t.z)&&(i.uniform3i(this.addr,t.x,t.y,t.z),e[0]=t.x,e[1]=t.y,e[2]=t.z);else{if(an(e,t))return;i.uniform3iv(this.addr,t),ln(e,t)}}function $b(i,t){let e=this.cache;if(t.x!==void 0)(e[0]!==t.x||e[1]!==t.y||e[2]!==t.z||e[3]!==t.w)&&(i.uniform4i(this.addr,t.x,t.y,t.z,t.w),e[0]=t.x,e[1]=t.y,e[2]=t.z,e[3]=t.w);else{if(an(e,t))return;i.uniform4iv(this.addr,t),ln(e,t)}}function Zb(i,t){let e=this.cache;e[0]!==t&&(i.uniform1ui(this.addr,t),e[0]=t)}function Jb(i,t){let e=this.cache;if(t.x!==void 0)(e[0]!==t.x||e[1]!==t.y)&&(i.uniform2ui(this.addr,t.x,t.y),e[0]=t.x,e[1]=t.y);else{if(an(e,t))return;i.uniform2uiv(this.addr,t),ln(e,t)}}function Kb(i,t){let e=this.cache;if(t.x!==void 0)(e[0]!==t.x||e[1]!==t.y||e[2]!==t.z)&&(i.uniform3ui(this.addr,t.x,t.y,t.z),e[0]=t.x,e[1]=t.y,e[2]=t.z);else{if(an(e,t))return;i.uniform3uiv(this.addr,t),ln(e,t)}}function jb(i,t){let e=this.cache;if(t.x!==void 0)(e[0]!==t.x||e[1]!==t.y||e[2]!==t.z||e[3]!==t.w)&&(i.uniform4ui(this.addr,t.x,t.y,t.z,t.w),e[0]=t.x,e[1]=t.y,e[2]=t.z,e[3]=t.w);else{if(an(e,t))return;i.uniform4uiv(this.addr,t),ln(e,t)}}function Qb(i,t,e){let n=this.cache,s=e.allocateTextureUnit();n[0]!==s&&(i.uniform1i(this.addr,s),n[0]=s);let r;this.type===i.SAMPLER_2D_SHADOW?(Jm.compareFunction=Vg,r=Jm):r=qg,e.setTexture2D(t||r,s)}function tw(i,t,e){let n=this.cache,s=e.allocateTextureUnit();n[0]!==s&&(i.uniform1i(this.addr,s),n[0]=s),e.setTexture3D(t||$g,s)}function ew(i,t,e){let n=this.cache,s=e.allocateTextureUnit();n[0]!==s&&(i.uniform1i(this.addr,s),n[0]=s),e.setTextureCube(t||Zg,s)}function nw(i,t,e){let n=this.cache,s=e.allocateTextureUnit();n[0]!==s&&(i.uniform1i(this.addr,s),n[0]=s),e.setTexture2DArray(t||Yg,s)}function iw(i){switch(i){case 5126:return Bb;case 35664:return zb;case 35665:return kb;case 35666:return Vb;case 35674:return Hb;case 35675:return Gb;case 35676:return Wb;case 5124:case 35670:return Xb;case 35667:case 35671:return qb;case 35668:case 35672:return Yb;case 35669:case 35673:return $b;case 5125:return Zb;case 36294:return Jb;case 36295:return Kb;case 36296:return jb;case 35678:case 36198:case 36298:case 36306:case 35682:return Qb;case 35679:case 36299:case 36307:return tw;case 35680:case 36300:case 36308:case 36293:return ew;case 36289:case 36303:case 36311:case 36292:return nw}}function sw(i,t){i.uniform1fv(this.addr,t)}function rw(i,t){let e=xo(t,this.size,2);i.uniform2fv(this.addr,e)}function ow(i,t){let e=xo(t,this.size,3);i.uniform3fv(this.addr,e)}function aw(i,t){let e=xo(t,this.size,4);i.uniform4fv(this.addr,e)}function lw(i,t){let e=xo(t,this.size,4);i.uniformMatrix2fv(this.addr,!1,e)}function cw(i,t){let e=xo(t,this.size,9);i.uniformMatrix3fv(this.addr,!1,e)}function hw(i,t){let e=xo(t,this.size,16);i.uniformMatrix4fv(this.addr,!1,e)}function uw(i,t){i.uniform1iv(this.addr,t)}function dw(i,t){i.uniform2iv(this.addr,t)}function fw(i,t){i.uniform3iv(this.addr,t)}function pw(i,t){i.uniform4iv(this.addr,t)}function mw(i,t){i.uniform1uiv(this.addr,t)}function gw(i,t){i.uniform2uiv(this.addr,t)}function _w(i,t){i.uniform3uiv(this.addr,t)}function xw(i,t){i.uniform4uiv(this.addr,t)}function yw(i,t,e){let n=this.cache,s=t.length,r=oc(e,s);an(n,r)||(i.uniform1iv(this.addr,r),ln(n,r));for(let o=0;o!==s;++o)e.setTexture2D(t[o]||qg,r[o])}function vw(i,t,e){let n=this.cache,s=t.length,r=oc(e,s);an(n,r)||(i.uniform1iv(this.addr,r),ln(n,r));for(let o=0;o!==s;++o)e.setTexture3D(t[o]||$g,r[o])}function Mw(i,t,e){let n=this.cache,s=t.length,r=oc(e,s);an(n,r)||(i.uniform1iv(this.addr,r),ln(n,r));for(let o=0;o!==s;++o)e.setTextureCube(t[o]||Zg,r[o])}function Sw(i,t,e){let n=this.cache,s=t.length,r=oc(e,s);an(n,r)||(i.uniform1iv(this.addr,r),ln(n,r));for(let o=0;o!==s;++o)e.setTexture2DArray(t[o]||Yg,r[o])}function bw(i){switch(i){case 5126:return sw;case 35664:return rw;case 35665:return ow;case 35666:return aw;case 35674:return lw;case 35675:return cw;case 35676:return hw;case 5124:case 35670:return uw;case 35667:case 35671:return dw;case 35668:case 35672:return fw;case 35669:case 35673:return pw;case 5125:return mw;case 36294:return gw;case 36295:return _w;case 36296:return xw;case 35678:case 36198:case 36298:case 36306:case 35682:return yw;case 35679:case 36299:case 36307:return vw;case 35680:case 36300:case 36308:case 36293:return Mw;case 36289:case 36303:case 36311:case 36292:return Sw}}var Ju=class{constructor(t,e,n){this.id=t,this.addr=n,this.cache=[],this.type=e.type,this.setValue=iw(e.type)}},Ku=class{constructor(t,e,n){this.id=t,this.addr=n,this.cache=[],this.type=e.type,this.size=e.size,this.setValue=bw(e.type)}},ju=class{constructor(t){this.id=t,this.seq=[],this.map={}}setValue(t,e,n){let s=this.seq;for(let r=0,o=s.length;r!==o;++r){let a=s[r];a.setValue(t,e[a.id],n)}}},Kh=/(\w+)(\])?(\[|\.)?/g;function ng(i,t){i.seq.push(t),i.map[t.id]=t}function ww(i,t,e){let n=i.name,s=n.length;for(Kh.lastIndex=0;;){let r=Kh.exec(n),o=Kh.lastIndex,a=r[1],l=r[2]==="]",c=r[3];if(l&&(a=a|0),c===void 0||c==="["&&o+2===s){ng(e,c===void 0?new Ju(a,i,t):new Ku(a,i,t));break}else{let d=e.map[a];d===void 0&&(d=new ju(a),ng(e,d)),e=d}}}var io=class{constructor(t,e){this.seq=[],this.map={};let n=t.getProgramParameter(e,t.ACTIVE_UNIFORMS);for(let s=0;s<n;++s){let r=t.getActiveUniform(e,s),o=t.getUniformLocation(e,r.name);ww(r,o,this)}}setValue(t,e,n,s){let r=this.map[e];r!==void 0&&r.setValue(t,n,s)}setOptional(t,e,n){let s=e[n];s!==void 0&&this.setValue(t,n,s)}static upload(t,e,n,s){for(let r=0,o=e.length;r!==o;++r){let a=e[r],l=n[a.id];l.needsUpdate!==!1&&a.setValue(t,l.value,s)}}static seqWithValue(t,e){let n=[];for(let s=0,r=t.length;s!==r;++s){let o=t[s];o.id in e&&n.push(o)}return n}};function ig(i,t,e){let n=i.createShader(t);return i.shaderSource(n,e),i.compileShader(n),n}var Ew=37297,Tw=0;function Aw(i,t){let e=i.split(`
+`),n=[],s=Math.max(t-6,0),r=Math.min(t+6,e.length);for(let o=s;o<r;o++){let a=o+1;n.push(`${a===t?">":" "} ${a}: ${e[o]}`)}return n.join(`
+`)}var sg=new le;function Cw(i){ve._getMatrix(sg,ve.workingColorSpace,i);let t=`mat3( ${sg.elements.map(e=>e.toFixed(4))} )`;switch(ve.getTransfer(i)){case ic:return[t,"LinearTransferOETF"];case Le:return[t,"sRGBTransferOETF"];default:return console.warn("THREE.WebGLProgram: Unsupported color space: ",i),[t,"LinearTransferOETF"]}}function rg(i,t,e){let n=i.getShaderParameter(t,i.COMPILE_STATUS),s=i.getShaderInfoLog(t).trim();if(n&&s==="")return"";let r=/ERROR: 0:(\d+)/.exec(s);if(r){let o=parseInt(r[1]);return e.toUpperCase()+`
+
+`+s+`
+
+`+Aw(i.getShaderSource(t),o)}else return s}function Rw(i,t){let e=Cw(t);return[`vec4 ${i}( vec4 value ) {`,`	return ${e[1]}( vec4( value.rgb * ${e[0]}, value.a ) );`,"}"].join(`
+`)}function Pw(i,t){let e;switch(t){case Vy:e="Linear";break;case Hy:e="Reinhard";break;case Gy:e="Cineon";break;case Wy:e="ACESFilmic";break;case qy:e="AgX";break;case Yy:e="Neutral";break;case Xy:e="Custom";break;default:console.warn("THREE.WebGLProgram: Unsupported toneMapping:",t),e="Linear"}return"vec3 "+i+"( vec3 color ) { return "+e+"ToneMapping( color ); }"}var sl=new D;function Iw(){ve.getLuminanceCoefficients(sl);let i=sl.x.toFixed(4),t=sl.y.toFixed(4),e=sl.z.toFixed(4);return["float luminance( const in vec3 rgb ) {",`	const vec3 weights = vec3( ${i}, ${t}, ${e} );`,"	return dot( weights, rgb );","}"].join(`
+`)}function Lw(i){return[i.extensionClipCullDistance?"#extension GL_ANGLE_clip_cull_distance : require":"",i.extensionMultiDraw?"#extension GL_ANGLE_multi_draw : require":""].filter(Wo).join(`
+`)}function Dw(i){let t=[];for(let e in i){let n=i[e];n!==!1&&t.push("#define "+e+" "+n)}return t.join(`
+`)}function Uw(i,t){let e={},n=i.getProgramParameter(t,i.ACTIVE_ATTRIBUTES);for(let s=0;s<n;s++){let r=i.getActiveAttrib(t,s),o=r.name,a=1;r.type===i.FLOAT_MAT2&&(a=2),r.type===i.FLOAT_MAT3&&(a=3),r.type===i.FLOAT_MAT4&&(a=4),e[o]={type:r.type,location:i.getAttribLocation(t,o),locationSize:a}}return e}function Wo(i){return i!==""}function og(i,t){let e=t.numSpotLightShadows+t.numSpotLightMaps-t.numSpotLightShadowsWithMaps;return i.replace(/NUM_DIR_LIGHTS/g,t.numDirLights).replace(/NUM_SPOT_LIGHTS/g,t.numSpotLights).replace(/NUM_SPOT_LIGHT_MAPS/g,t.numSpotLightMaps).replace(/NUM_SPOT_LIGHT_COORDS/g,e).replace(/NUM_RECT_AREA_LIGHTS/g,t.numRectAreaLights).replace(/NUM_POINT_LIGHTS/g,t.numPointLights).replace(/NUM_HEMI_LIGHTS/g,t.numHemiLights).replace(/NUM_DIR_LIGHT_SHADOWS/g,t.numDirLightShadows).replace(/NUM_SPOT_LIGHT_SHADOWS_WITH_MAPS/g,t.numSpotLightShadowsWithMaps).replace(/NUM_SPOT_LIGHT_SHADOWS/g,t.numSpotLightShadows).replace(/NUM_POINT_LIGHT_SHADOWS/g,t.numPointLightShadows)}function ag(i,t){return i.replace(/NUM_CLIPPING_PLANES/g,t.numClippingPlanes).replace(/UNION_CLIPPING_PLANES/g,t.numClippingPlanes-t.numClipIntersection)}var Nw=/^[ \t]*#include +<([\w\d./]+)>/gm;function Qu(i){return i.replace(Nw,Ow)}var Fw=new Map;function Ow(i,t){let e=ce[t];if(e===void 0){let n=Fw.get(t);if(n!==void 0)e=ce[n],console.warn('THREE.WebGLRenderer: Shader chunk "%s" has been deprecated. Use "%s" instead.',t,n);else throw new Error("Can not resolve #include <"+t+">")}return Qu(e)}var Bw=/#pragma unroll_loop_start\s+for\s*\(\s*int\s+i\s*=\s*(\d+)\s*;\s*i\s*<\s*(\d+)\s*;\s*i\s*\+\+\s*\)\s*{([\s\S]+?)}\s+#pragma unroll_loop_end/g;function lg(i){return i.replace(Bw,zw)}function zw(i,t,e,n){let s="";for(let r=parseInt(t);r<parseInt(e);r++)s+=n.replace(/\[\s*i\s*\]/g,"[ "+r+" ]").replace(/UNROLLED_LOOP_INDEX/g,r);return s}function cg(i){let t=`precision ${i.precision} float;
+	precision ${i.precision} int;
+	precision ${i.precision} sampler2D;
+	precision ${i.precision} samplerCube;
+	precision ${i.precision} sampler3D;
+	precision ${i.precision} sampler2DArray;
+	precision ${i.precision} sampler2DShadow;
+	precision ${i.precision} samplerCubeShadow;
+	precision ${i.precision} sampler2DArrayShadow;
+	precision ${i.precision} isampler2D;
+	precision ${i.precision} isampler3D;
+	precision ${i.precision} isamplerCube;
+	precision ${i.precision} isampler2DArray;
+	precision ${i.precision} usampler2D;
+	precision ${i.precision} usampler3D;
+	precision ${i.precision} usamplerCube;
+	precision ${i.precision} usampler2DArray;
+	`;return i.precision==="highp"?t+=`
+#define HIGH_PRECISION`:i.precision==="mediump"?t+=`
+#define MEDIUM_PRECISION`:i.precision==="lowp"&&(t+=`
+#define LOW_PRECISION`),t}function kw(i){let t="SHADOWMAP_TYPE_BASIC";return i.shadowMapType===Tg?t="SHADOWMAP_TYPE_PCF":i.shadowMapType===vy?t="SHADOWMAP_TYPE_PCF_SOFT":i.shadowMapType===rs&&(t="SHADOWMAP_TYPE_VSM"),t}function Vw(i){let t="ENVMAP_TYPE_CUBE";if(i.envMap)switch(i.envMapMode){case ro:case oo:t="ENVMAP_TYPE_CUBE";break;case nc:t="ENVMAP_TYPE_CUBE_UV";break}return t}function Hw(i){let t="ENVMAP_MODE_REFLECTION";if(i.envMap)switch(i.envMapMode){case oo:t="ENVMAP_MODE_REFRACTION";break}return t}function Gw(i){let t="ENVMAP_BLENDING_NONE";if(i.envMap)switch(i.combine){case Id:t="ENVMAP_BLENDING_MULTIPLY";break;case zy:t="ENVMAP_BLENDING_MIX";break;case ky:t="ENVMAP_BLENDING_ADD";break}return t}function Ww(i){let t=i.envMapCubeUVHeight;if(t===null)return null;let e=Math.log2(t)-2,n=1/t;return{texelWidth:1/(3*Math.max(Math.pow(2,e),7*16)),texelHeight:n,maxMip:e}}function Xw(i,t,e,n){let s=i.getContext(),r=e.defines,o=e.vertexShader,a=e.fragmentShader,l=kw(e),c=Vw(e),u=Hw(e),d=Gw(e),h=Ww(e),f=Lw(e),g=Dw(r),_=s.createProgram(),m,p,b=e.glslVersion?"#version "+e.glslVersion+`
+`:"";e.isRawShaderMaterial?(m=["#define SHADER_TYPE "+e.shaderType,"#define SHADER_NAME "+e.shaderName,g].filter(Wo).join(`
+`),m.length>0&&(m+=`
+`),p=["#define SHADER_TYPE "+e.shaderType,"#define SHADER_NAME "+e.shaderName,g].filter(Wo).join(`
+`),p.length>0&&(p+=`
+`)):(m=[cg(e),"#define SHADER_TYPE "+e.shaderType,"#define SHADER_NAME "+e.shaderName,g,e.extensionClipCullDistance?"#define USE_CLIP_DISTANCE":"",e.batching?"#define USE_BATCHING":"",e.batchingColor?"#define USE_BATCHING_COLOR":"",e.instancing?"#define USE_INSTANCING":"",e.instancingColor?"#define USE_INSTANCING_COLOR":"",e.instancingMorph?"#define USE_INSTANCING_MORPH":"",e.useFog&&e.fog?"#define USE_FOG":"",e.useFog&&e.fogExp2?"#define FOG_EXP2":"",e.map?"#define USE_MAP":"",e.envMap?"#define USE_ENVMAP":"",e.envMap?"#define "+u:"",e.lightMap?"#define USE_LIGHTMAP":"",e.aoMap?"#define USE_AOMAP":"",e.bumpMap?"#define USE_BUMPMAP":"",e.normalMap?"#define USE_NORMALMAP":"",e.normalMapObjectSpace?"#define USE_NORMALMAP_OBJECTSPACE":"",e.normalMapTangentSpace?"#define USE_NORMALMAP_TANGENTSPACE":"",e.displacementMap?"#define USE_DISPLACEMENTMAP":"",e.emissiveMap?"#define USE_EMISSIVEMAP":"",e.anisotropy?"#define USE_ANISOTROPY":"",e.anisotropyMap?"#define USE_ANISOTROPYMAP":"",e.clearcoatMap?"#define USE_CLEARCOATMAP":"",e.clearcoatRoughnessMap?"#define USE_CLEARCOAT_ROUGHNESSMAP":"",e.clearcoatNormalMap?"#define USE_CLEARCOAT_NORMALMAP":"",e.iridescenceMap?"#define USE_IRIDESCENCEMAP":"",e.iridescenceThicknessMap?"#define USE_IRIDESCENCE_THICKNESSMAP":"",e.specularMap?"#define USE_SPECULARMAP":"",e.specularColorMap?"#define USE_SPECULAR_COLORMAP":"",e.specularIntensityMap?"#define USE_SPECULAR_INTENSITYMAP":"",e.roughnessMap?"#define USE_ROUGHNESSMAP":"",e.metalnessMap?"#define USE_METALNESSMAP":"",e.alphaMap?"#define USE_ALPHAMAP":"",e.alphaHash?"#define USE_ALPHAHASH":"",e.transmission?"#define USE_TRANSMISSION":"",e.transmissionMap?"#define USE_TRANSMISSIONMAP":"",e.thicknessMap?"#define USE_THICKNESSMAP":"",e.sheenColorMap?"#define USE_SHEEN_COLORMAP":"",e.sheenRoughnessMap?"#define USE_SHEEN_ROUGHNESSMAP":"",e.mapUv?"#define MAP_UV "+e.mapUv:"",e.alphaMapUv?"#define ALPHAMAP_UV "+e.alphaMapUv:"",e.lightMapUv?"#define LIGHTMAP_UV "+e.lightMapUv:"",e.aoMapUv?"#define AOMAP_UV "+e.aoMapUv:"",e.emissiveMapUv?"#define EMISSIVEMAP_UV "+e.emissiveMapUv:"",e.bumpMapUv?"#define BUMPMAP_UV "+e.bumpMapUv:"",e.normalMapUv?"#define NORMALMAP_UV "+e.normalMapUv:"",e.displacementMapUv?"#define DISPLACEMENTMAP_UV "+e.displacementMapUv:"",e.metalnessMapUv?"#define METALNESSMAP_UV "+e.metalnessMapUv:"",e.roughnessMapUv?"#define ROUGHNESSMAP_UV "+e.roughnessMapUv:"",e.anisotropyMapUv?"#define ANISOTROPYMAP_UV "+e.anisotropyMapUv:"",e.clearcoatMapUv?"#define CLEARCOATMAP_UV "+e.clearcoatMapUv:"",e.clearcoatNormalMapUv?"#define CLEARCOAT_NORMALMAP_UV "+e.clearcoatNormalMapUv:"",e.clearcoatRoughnessMapUv?"#define CLEARCOAT_ROUGHNESSMAP_UV "+e.clearcoatRoughnessMapUv:"",e.iridescenceMapUv?"#define IRIDESCENCEMAP_UV "+e.iridescenceMapUv:"",e.iridescenceThicknessMapUv?"#define IRIDESCENCE_THICKNESSMAP_UV "+e.iridescenceThicknessMapUv:"",e.sheenColorMapUv?"#define SHEEN_COLORMAP_UV "+e.sheenColorMapUv:"",e.sheenRoughnessMapUv?"#define SHEEN_ROUGHNESSMAP_UV "+e.sheenRoughnessMapUv:"",e.specularMapUv?"#define SPECULARMAP_UV "+e.specularMapUv:"",e.specularColorMapUv?"#define SPECULAR_COLORMAP_UV "+e.specularColorMapUv:"",e.specularIntensityMapUv?"#define SPECULAR_INTENSITYMAP_UV "+e.specularIntensityMapUv:"",e.transmissionMapUv?"#define TRANSMISSIONMAP_UV "+e.transmissionMapUv:"",e.thicknessMapUv?"#define THICKNESSMAP_UV "+e.thicknessMapUv:"",e.vertexTangents&&e.flatShading===!1?"#define USE_TANGENT":"",e.vertexColors?"#define USE_COLOR":"",e.vertexAlphas?"#define USE_COLOR_ALPHA":"",e.vertexUv1s?"#define USE_UV1":"",e.vertexUv2s?"#define USE_UV2":"",e.vertexUv3s?"#define USE_UV3":"",e.pointsUvs?"#define USE_POINTS_UV":"",e.flatShading?"#define FLAT_SHADED":"",e.skinning?"#define USE_SKINNING":"",e.morphTargets?"#define USE_MORPHTARGETS":"",e.morphNormals&&e.flatShading===!1?"#define USE_MORPHNORMALS":"",e.morphColors?"#define USE_MORPHCOLORS":"",e.morphTargetsCount>0?"#define MORPHTARGETS_TEXTURE_STRIDE "+e.morphTextureStride:"",e.morphTargetsCount>0?"#define MORPHTARGETS_COUNT "+e.morphTargetsCount:"",e.doubleSided?"#define DOUBLE_SIDED":"",e.flipSided?"#define FLIP_SIDED":"",e.shadowMapEnabled?"#define USE_SHADOWMAP":"",e.shadowMapEnabled?"#define "+l:"",e.sizeAttenuation?"#define USE_SIZEATTENUATION":"",e.numLightProbes>0?"#define USE_LIGHT_PROBES":"",e.logarithmicDepthBuffer?"#define USE_LOGDEPTHBUF":"",e.reverseDepthBuffer?"#define USE_REVERSEDEPTHBUF":"","uniform mat4 modelMatrix;","uniform mat4 modelViewMatrix;","uniform mat4 projectionMatrix;","uniform mat4 viewMatrix;","uniform mat3 normalMatrix;","uniform vec3 cameraPosition;","uniform bool isOrthographic;","#ifdef USE_INSTANCING","	attribute mat4 instanceMatrix;","#endif","#ifdef USE_INSTANCING_COLOR","	attribute vec3 instanceColor;","#endif","#ifdef USE_INSTANCING_MORPH","	uniform sampler2D morphTexture;","#endif","attribute vec3 position;","attribute vec3 normal;","attribute vec2 uv;","#ifdef USE_UV1","	attribute vec2 uv1;","#endif","#ifdef USE_UV2","	attribute vec2 uv2;","#endif","#ifdef USE_UV3","	attribute vec2 uv3;","#endif","#ifdef USE_TANGENT","	attribute vec4 tangent;","#endif","#if defined( USE_COLOR_ALPHA )","	attribute vec4 color;","#elif defined( USE_COLOR )","	attribute vec3 color;","#endif","#ifdef USE_SKINNING","	attribute vec4 skinIndex;","	attribute vec4 skinWeight;","#endif",`
+`].filter(Wo).join(`
+`),p=[cg(e),"#define SHADER_TYPE "+e.shaderType,"#define SHADER_NAME "+e.shaderName,g,e.useFog&&e.fog?"#define USE_FOG":"",e.useFog&&e.fogExp2?"#define FOG_EXP2":"",e.alphaToCoverage?"#define ALPHA_TO_COVERAGE":"",e.map?"#define USE_MAP":"",e.matcap?"#define USE_MATCAP":"",e.envMap?"#define USE_ENVMAP":"",e.envMap?"#define "+c:"",e.envMap?"#define "+u:"",e.envMap?"#define "+d:"",h?"#define CUBEUV_TEXEL_WIDTH "+h.texelWidth:"",h?"#define CUBEUV_TEXEL_HEIGHT "+h.texelHeight:"",h?"#define CUBEUV_MAX_MIP "+h.maxMip+".0":"",e.lightMap?"#define USE_LIGHTMAP":"",e.aoMap?"#define USE_AOMAP":"",e.bumpMap?"#define USE_BUMPMAP":"",e.normalMap?"#define USE_NORMALMAP":"",e.normalMapObjectSpace?"#define USE_NORMALMAP_OBJECTSPACE":"",e.normalMapTangentSpace?"#define USE_NORMALMAP_TANGENTSPACE":"",e.emissiveMap?"#define USE_EMISSIVEMAP":"",e.anisotropy?"#define USE_ANISOTROPY":"",e.anisotropyMap?"#define USE_ANISOTROPYMAP":"",e.clearcoat?"#define USE_CLEARCOAT":"",e.clearcoatMap?"#define USE_CLEARCOATMAP":"",e.clearcoatRoughnessMap?"#define USE_CLEARCOAT_ROUGHNESSMAP":"",e.clearcoatNormalMap?"#define USE_CLEARCOAT_NORMALMAP":"",e.dispersion?"#define USE_DISPERSION":"",e.iridescence?"#define USE_IRIDESCENCE":"",e.iridescenceMap?"#define USE_IRIDESCENCEMAP":"",e.iridescenceThicknessMap?"#define USE_IRIDESCENCE_THICKNESSMAP":"",e.specularMap?"#define USE_SPECULARMAP":"",e.specularColorMap?"#define USE_SPECULAR_COLORMAP":"",e.specularIntensityMap?"#define USE_SPECULAR_INTENSITYMAP":"",e.roughnessMap?"#define USE_ROUGHNESSMAP":"",e.metalnessMap?"#define USE_METALNESSMAP":"",e.alphaMap?"#define USE_ALPHAMAP":"",e.alphaTest?"#define USE_ALPHATEST":"",e.alphaHash?"#define USE_ALPHAHASH":"",e.sheen?"#define USE_SHEEN":"",e.sheenColorMap?"#define USE_SHEEN_COLORMAP":"",e.sheenRoughnessMap?"#define USE_SHEEN_ROUGHNESSMAP":"",e.transmission?"#define USE_TRANSMISSION":"",e.transmissionMap?"#define USE_TRANSMISSIONMAP":"",e.thicknessMap?"#define USE_THICKNESSMAP":"",e.vertexTangents&&e.flatShading===!1?"#define USE_TANGENT":"",e.vertexColors||e.instancingColor||e.batchingColor?"#define USE_COLOR":"",e.vertexAlphas?"#define USE_COLOR_ALPHA":"",e.vertexUv1s?"#define USE_UV1":"",e.vertexUv2s?"#define USE_UV2":"",e.vertexUv3s?"#define USE_UV3":"",e.pointsUvs?"#define USE_POINTS_UV":"",e.gradientMap?"#define USE_GRADIENTMAP":"",e.flatShading?"#define FLAT_SHADED":"",e.doubleSided?"#define DOUBLE_SIDED":"",e.flipSided?"#define FLIP_SIDED":"",e.shadowMapEnabled?"#define USE_SHADOWMAP":"",e.shadowMapEnabled?"#define "+l:"",e.premultipliedAlpha?"#define PREMULTIPLIED_ALPHA":"",e.numLightProbes>0?"#define USE_LIGHT_PROBES":"",e.decodeVideoTexture?"#define DECODE_VIDEO_TEXTURE":"",e.decodeVideoTextureEmissive?"#define DECODE_VIDEO_TEXTURE_EMISSIVE":"",e.logarithmicDepthBuffer?"#define USE_LOGDEPTHBUF":"",e.reverseDepthBuffer?"#define USE_REVERSEDEPTHBUF":"","uniform mat4 viewMatrix;","uniform vec3 cameraPosition;","uniform bool isOrthographic;",e.toneMapping!==Is?"#define TONE_MAPPING":"",e.toneMapping!==Is?ce.tonemapping_pars_fragment:"",e.toneMapping!==Is?Pw("toneMapping",e.toneMapping):"",e.dithering?"#define DITHERING":"",e.opaque?"#define OPAQUE":"",ce.colorspace_pars_fragment,Rw("linearToOutputTexel",e.outputColorSpace),Iw(),e.useDepthPacking?"#define DEPTH_PACKING "+e.depthPacking:"",`
+`].filter(Wo).join(`
+`)),o=Qu(o),o=og(o,e),o=ag(o,e),a=Qu(a),a=og(a,e),a=ag(a,e),o=lg(o),a=lg(a),e.isRawShaderMaterial!==!0&&(b=`#version 300 es
+`,m=[f,"#define attribute in","#define varying out","#define texture2D texture"].join(`
+`)+`
+`+m,p=["#define varying in",e.glslVersion===Sm?"":"layout(location = 0) out highp vec4 pc_fragColor;",e.glslVersion===Sm?"":"#define gl_FragColor pc_fragColor","#define gl_FragDepthEXT gl_FragDepth","#define texture2D texture","#define textureCube texture","#define texture2DProj textureProj","#define texture2DLodEXT textureLod","#define texture2DProjLodEXT textureProjLod","#define textureCubeLodEXT textureLod","#define texture2DGradEXT textureGrad","#define texture2DProjGradEXT textureProjGrad","#define textureCubeGradEXT textureGrad"].join(`
+`)+`
+`+p);let y=b+m+o,v=b+p+a,N=ig(s,s.VERTEX_SHADER,y),P=ig(s,s.FRAGMENT_SHADER,v);s.attachShader(_,N),s.attachShader(_,P),e.index0AttributeName!==void 0?s.bindAttribLocation(_,0,e.index0AttributeName):e.morphTargets===!0&&s.bindAttribLocation(_,0,"position"),s.linkProgram(_);function R(A){if(i.debug.checkShaderErrors){let W=s.getProgramInfoLog(_).trim(),G=s.getShaderInfoLog(N).trim(),X=s.getShaderInfoLog(P).trim(),Z=!0,Y=!0;if(s.getProgramParameter(_,s.LINK_STATUS)===!1)if(Z=!1,typeof i.debug.onShaderError=="function")i.debug.onShaderError(s,_,N,P);else{let nt=rg(s,N,"vertex"),Q=rg(s,P,"fragment");console.error("THREE.WebGLProgram: Shader Error "+s.getError()+" - VALIDATE_STATUS "+s.getProgramParameter(_,s.VALIDATE_STATUS)+`
+
+Material Name: `+A.name+`
+Material Type: `+A.type+`
+
+Program Info Log: `+W+`
+`+nt+`
+`+Q)}else W!==""?console.warn("THREE.WebGLProgram: Program Info Log:",W):(G===""||X==="")&&(Y=!1);Y&&(A.diagnostics={runnable:Z,programLog:W,vertexShader:{log:G,prefix:m},fragmentShader:{log:X,prefix:p}})}s.deleteShader(N),s.deleteShader(P),F=new io(s,_),E=Uw(s,_)}let F;this.getUniforms=function(){return F===void 0&&R(this),F};let E;this.getAttributes=function(){return E===void 0&&R(this),E};let M=e.rendererExtensionParallelShaderCompile===!1;return this.isReady=function(){return M===!1&&(M=s.getProgramParameter(_,Ew)),M},this.destroy=function(){n.releaseStatesOfProgram(this),s.deleteProgram(_),this.program=void 0},this.type=e.shaderType,this.name=e.shaderName,this.id=Tw++,this.cacheKey=t,this.usedTimes=1,this.program=_,this.vertexShader=N,this.fragmentShader=P,this}var qw=0,td=class{constructor(){this.shaderCache=new Map,this.materialCache=new Map}update(t){let e=t.vertexShader,n=t.fragmentShader,s=this._getShaderStage(e),r=this._getShaderStage(n),o=this._getShaderCacheForMaterial(t);return o.has(s)===!1&&(o.add(s),s.usedTimes++),o.has(r)===!1&&(o.add(r),r.usedTimes++),this}remove(t){let e=this.materialCache.get(t);for(let n of e)n.usedTimes--,n.usedTimes===0&&this.shaderCache.delete(n.code);return this.materialCache.delete(t),this}getVertexShaderID(t){return this._getShaderStage(t.vertexShader).id}getFragmentShaderID(t){return this._getShaderStage(t.fragmentShader).id}dispose(){this.shaderCache.clear(),this.materialCache.clear()}_getShaderCacheForMaterial(t){let e=this.materialCache,n=e.get(t);return n===void 0&&(n=new Set,e.set(t,n)),n}_getShaderStage(t){let e=this.shaderCache,n=e.get(t);return n===void 0&&(n=new ed(t),e.set(t,n)),n}},ed=class{constructor(t){this.id=qw++,this.code=t,this.usedTimes=0}};function Yw(i,t,e,n,s,r,o){let a=new El,l=new td,c=new Set,u=[],d=s.logarithmicDepthBuffer,h=s.vertexTextures,f=s.precision,g={MeshDepthMaterial:"depth",MeshDistanceMaterial:"distanceRGBA",MeshNormalMaterial:"normal",MeshBasicMaterial:"basic",MeshLambertMaterial:"lambert",MeshPhongMaterial:"phong",MeshToonMaterial:"toon",MeshStandardMaterial:"physical",MeshPhysicalMaterial:"physical",MeshMatcapMaterial:"matcap",LineBasicMaterial:"basic",LineDashedMaterial:"dashed",PointsMaterial:"points",ShadowMaterial:"shadow",SpriteMaterial:"sprite"};function _(E){return c.add(E),E===0?"uv":`uv${E}`}function m(E,M,A,W,G){let X=W.fog,Z=G.geometry,Y=E.isMeshStandardMaterial?W.environment:null,nt=(E.isMeshStandardMaterial?e:t).get(E.envMap||Y),Q=nt&&nt.mapping===nc?nt.image.height:null,ft=g[E.type];E.precision!==null&&(f=s.getMaxPrecision(E.precision),f!==E.precision&&console.warn("THREE.WebGLProgram.getParameters:",E.precision,"not supported, using",f,"instead."));let at=Z.morphAttributes.position||Z.morphAttributes.normal||Z.morphAttributes.color,_t=at!==void 0?at.length:0,pt=0;Z.morphAttributes.position!==void 0&&(pt=1),Z.morphAttributes.normal!==void 0&&(pt=2),Z.morphAttributes.color!==void 0&&(pt=3);let Zt,J,ht,Ot;if(ft){let he=Nn[ft];Zt=he.vertexShader,J=he.fragmentShader}else Zt=E.vertexShader,J=E.fragmentShader,l.update(E),ht=l.getVertexShaderID(E),Ot=l.getFragmentShaderID(E);let lt=i.getRenderTarget(),Ft=i.state.buffers.depth.getReversed(),Yt=G.isInstancedMesh===!0,Ut=G.isBatchedMesh===!0,Qt=!!E.map,st=!!E.matcap,mt=!!nt,U=!!E.aoMap,Vt=!!E.lightMap,ut=!!E.bumpMap,Tt=!!E.normalMap,xt=!!E.displacementMap,Jt=!!E.emissiveMap,bt=!!E.metalnessMap,C=!!E.roughnessMap,S=E.anisotropy>0,O=E.clearcoat>0,tt=E.dispersion>0,j=E.iridescence>0,et=E.sheen>0,Nt=E.transmission>0,Mt=S&&!!E.anisotropyMap,At=O&&!!E.clearcoatMap,Kt=O&&!!E.clearcoatNormalMap,ct=O&&!!E.clearcoatRoughnessMap,wt=j&&!!E.iridescenceMap,Xt=j&&!!E.iridescenceThicknessMap,$t=et&&!!E.sheenColorMap,Rt=et&&!!E.sheenRoughnessMap,ae=!!E.specularMap,te=!!E.specularColorMap,Se=!!E.specularIntensityMap,B=Nt&&!!E.transmissionMap,Et=Nt&&!!E.thicknessMap,it=!!E.gradientMap,ot=!!E.alphaMap,It=E.alphaTest>0,Pt=!!E.alphaHash,se=!!E.extensions,We=Is;E.toneMapped&&(lt===null||lt.isXRRenderTarget===!0)&&(We=i.toneMapping);let Bt={shaderID:ft,shaderType:E.type,shaderName:E.name,vertexShader:Zt,fragmentShader:J,defines:E.defines,customVertexShaderID:ht,customFragmentShaderID:Ot,isRawShaderMaterial:E.isRawShaderMaterial===!0,glslVersion:E.glslVersion,precision:f,batching:Ut,batchingColor:Ut&&G._colorsTexture!==null,instancing:Yt,instancingColor:Yt&&G.instanceColor!==null,instancingMorph:Yt&&G.morphTexture!==null,supportsVertexTextures:h,outputColorSpace:lt===null?i.outputColorSpace:lt.isXRRenderTarget===!0?lt.texture.colorSpace:_o,alphaToCoverage:!!E.alphaToCoverage,map:Qt,matcap:st,envMap:mt,envMapMode:mt&&nt.mapping,envMapCubeUVHeight:Q,aoMap:U,lightMap:Vt,bumpMap:ut,normalMap:Tt,displacementMap:h&&xt,emissiveMap:Jt,normalMapObjectSpace:Tt&&E.normalMapType===Ky,normalMapTangentSpace:Tt&&E.normalMapType===Bg,metalnessMap:bt,roughnessMap:C,anisotropy:S,anisotropyMap:Mt,clearcoat:O,clearcoatMap:At,clearcoatNormalMap:Kt,clearcoatRoughnessMap:ct,dispersion:tt,iridescence:j,iridescenceMap:wt,iridescenceThicknessMap:Xt,sheen:et,sheenColorMap:$t,sheenRoughnessMap:Rt,specularMap:ae,specularColorMap:te,specularIntensityMap:Se,transmission:Nt,transmissionMap:B,thicknessMap:Et,gradientMap:it,opaque:E.transparent===!1&&E.blending===Qr&&E.alphaToCoverage===!1,alphaMap:ot,alphaTest:It,alphaHash:Pt,combine:E.combine,mapUv:Qt&&_(E.map.channel),aoMapUv:U&&_(E.aoMap.channel),lightMapUv:Vt&&_(E.lightMap.channel),bumpMapUv:ut&&_(E.bumpMap.channel),normalMapUv:Tt&&_(E.normalMap.channel),displacementMapUv:xt&&_(E.displacementMap.channel),emissiveMapUv:Jt&&_(E.emissiveMap.channel),metalnessMapUv:bt&&_(E.metalnessMap.channel),roughnessMapUv:C&&_(E.roughnessMap.channel),anisotropyMapUv:Mt&&_(E.anisotropyMap.channel),clearcoatMapUv:At&&_(E.clearcoatMap.channel),clearcoatNormalMapUv:Kt&&_(E.clearcoatNormalMap.channel),clearcoatRoughnessMapUv:ct&&_(E.clearcoatRoughnessMap.channel),iridescenceMapUv:wt&&_(E.iridescenceMap.channel),iridescenceThicknessMapUv:Xt&&_(E.iridescenceThicknessMap.channel),sheenColorMapUv:$t&&_(E.sheenColorMap.channel),sheenRoughnessMapUv:Rt&&_(E.sheenRoughnessMap.channel),specularMapUv:ae&&_(E.specularMap.channel),specularColorMapUv:te&&_(E.specularColorMap.channel),specularIntensityMapUv:Se&&_(E.specularIntensityMap.channel),transmissionMapUv:B&&_(E.transmissionMap.channel),thicknessMapUv:Et&&_(E.thicknessMap.channel),alphaMapUv:ot&&_(E.alphaMap.channel),vertexTangents:!!Z.attributes.tangent&&(Tt||S),vertexColors:E.vertexColors,vertexAlphas:E.vertexColors===!0&&!!Z.attributes.color&&Z.attributes.color.itemSize===4,pointsUvs:G.isPoints===!0&&!!Z.attributes.uv&&(Qt||ot),fog:!!X,useFog:E.fog===!0,fogExp2:!!X&&X.isFogExp2,flatShading:E.flatShading===!0,sizeAttenuation:E.sizeAttenuation===!0,logarithmicDepthBuffer:d,reverseDepthBuffer:Ft,skinning:G.isSkinnedMesh===!0,morphTargets:Z.morphAttributes.position!==void 0,morphNormals:Z.morphAttributes.normal!==void 0,morphColors:Z.morphAttributes.color!==void 0,morphTargetsCount:_t,morphTextureStride:pt,numDirLights:M.directional.length,numPointLights:M.point.length,numSpotLights:M.spot.length,numSpotLightMaps:M.spotLightMap.length,numRectAreaLights:M.rectArea.length,numHemiLights:M.hemi.length,numDirLightShadows:M.directionalShadowMap.length,numPointLightShadows:M.pointShadowMap.length,numSpotLightShadows:M.spotShadowMap.length,numSpotLightShadowsWithMaps:M.numSpotLightShadowsWithMaps,numLightProbes:M.numLightProbes,numClippingPlanes:o.numPlanes,numClipIntersection:o.numIntersection,dithering:E.dithering,shadowMapEnabled:i.shadowMap.enabled&&A.length>0,shadowMapType:i.shadowMap.type,toneMapping:We,decodeVideoTexture:Qt&&E.map.isVideoTexture===!0&&ve.getTransfer(E.map.colorSpace)===Le,decodeVideoTextureEmissive:Jt&&E.emissiveMap.isVideoTexture===!0&&ve.getTransfer(E.emissiveMap.colorSpace)===Le,premultipliedAlpha:E.premultipliedAlpha,doubleSided:E.side===Mi,flipSided:E.side===zn,useDepthPacking:E.depthPacking>=0,depthPacking:E.depthPacking||0,index0AttributeName:E.index0AttributeName,extensionClipCullDistance:se&&E.extensions.clipCullDistance===!0&&n.has("WEBGL_clip_cull_distance"),extensionMultiDraw:(se&&E.extensions.multiDraw===!0||Ut)&&n.has("WEBGL_multi_draw"),rendererExtensionParallelShaderCompile:n.has("KHR_parallel_shader_compile"),customProgramCacheKey:E.customProgramCacheKey()};return Bt.vertexUv1s=c.has(1),Bt.vertexUv2s=c.has(2),Bt.vertexUv3s=c.has(3),c.clear(),Bt}function p(E){let M=[];if(E.shaderID?M.push(E.shaderID):(M.push(E.customVertexShaderID),M.push(E.customFragmentShaderID)),E.defines!==void 0)for(let A in E.defines)M.push(A),M.push(E.defines[A]);return E.isRawShaderMaterial===!1&&(b(M,E),y(M,E),M.push(i.outputColorSpace)),M.push(E.customProgramCacheKey),M.join()}function b(E,M){E.push(M.precision),E.push(M.outputColorSpace),E.push(M.envMapMode),E.push(M.envMapCubeUVHeight),E.push(M.mapUv),E.push(M.alphaMapUv),E.push(M.lightMapUv),E.push(M.aoMapUv),E.push(M.bumpMapUv),E.push(M.normalMapUv),E.push(M.displacementMapUv),E.push(M.emissiveMapUv),E.push(M.metalnessMapUv),E.push(M.roughnessMapUv),E.push(M.anisotropyMapUv),E.push(M.clearcoatMapUv),E.push(M.clearcoatNormalMapUv),E.push(M.clearcoatRoughnessMapUv),E.push(M.iridescenceMapUv),E.push(M.iridescenceThicknessMapUv),E.push(M.sheenColorMapUv),E.push(M.sheenRoughnessMapUv),E.push(M.specularMapUv),E.push(M.specularColorMapUv),E.push(M.specularIntensityMapUv),E.push(M.transmissionMapUv),E.push(M.thicknessMapUv),E.push(M.combine),E.push(M.fogExp2),E.push(M.sizeAttenuation),E.push(M.morphTargetsCount),E.push(M.morphAttributeCount),E.push(M.numDirLights),E.push(M.numPointLights),E.push(M.numSpotLights),E.push(M.numSpotLightMaps),E.push(M.numHemiLights),E.push(M.numRectAreaLights),E.push(M.numDirLightShadows),E.push(M.numPointLightShadows),E.push(M.numSpotLightShadows),E.push(M.numSpotLightShadowsWithMaps),E.push(M.numLightProbes),E.push(M.shadowMapType),E.push(M.toneMapping),E.push(M.numClippingPlanes),E.push(M.numClipIntersection),E.push(M.depthPacking)}function y(E,M){a.disableAll(),M.supportsVertexTextures&&a.enable(0),M.instancing&&a.enable(1),M.instancingColor&&a.enable(2),M.instancingMorph&&a.enable(3),M.matcap&&a.enable(4),M.envMap&&a.enable(5),M.normalMapObjectSpace&&a.enable(6),M.normalMapTangentSpace&&a.enable(7),M.clearcoat&&a.enable(8),M.iridescence&&a.enable(9),M.alphaTest&&a.enable(10),M.vertexColors&&a.enable(11),M.vertexAlphas&&a.enable(12),M.vertexUv1s&&a.enable(13),M.vertexUv2s&&a.enable(14),M.vertexUv3s&&a.enable(15),M.vertexTangents&&a.enable(16),M.anisotropy&&a.enable(17),M.alphaHash&&a.enable(18),M.batching&&a.enable(19),M.dispersion&&a.enable(20),M.batchingColor&&a.enable(21),E.push(a.mask),a.disableAll(),M.fog&&a.enable(0),M.useFog&&a.enable(1),M.flatShading&&a.enable(2),M.logarithmicDepthBuffer&&a.enable(3),M.reverseDepthBuffer&&a.enable(4),M.skinning&&a.enable(5),M.morphTargets&&a.enable(6),M.morphNormals&&a.enable(7),M.morphColors&&a.enable(8),M.premultipliedAlpha&&a.enable(9),M.shadowMapEnabled&&a.enable(10),M.doubleSided&&a.enable(11),M.flipSided&&a.enable(12),M.useDepthPacking&&a.enable(13),M.dithering&&a.enable(14),M.transmission&&a.enable(15),M.sheen&&a.enable(16),M.opaque&&a.enable(17),M.pointsUvs&&a.enable(18),M.decodeVideoTexture&&a.enable(19),M.decodeVideoTextureEmissive&&a.enable(20),M.alphaToCoverage&&a.enable(21),E.push(a.mask)}function v(E){let M=g[E.type],A;if(M){let W=Nn[M];A=rc.clone(W.uniforms)}else A=E.uniforms;return A}function N(E,M){let A;for(let W=0,G=u.length;W<G;W++){let X=u[W];if(X.cacheKey===M){A=X,++A.usedTimes;break}}return A===void 0&&(A=new Xw(i,M,E,r),u.push(A)),A}function P(E){if(--E.usedTimes===0){let M=u.indexOf(E);u[M]=u[u.length-1],u.pop(),E.destroy()}}function R(E){l.remove(E)}function F(){l.dispose()}return{getParameters:m,getProgramCacheKey:p,getUniforms:v,acquireProgram:N,releaseProgram:P,releaseShaderCache:R,programs:u,dispose:F}}function $w(){let i=new WeakMap;function t(o){return i.has(o)}function e(o){let a=i.get(o);return a===void 0&&(a={},i.set(o,a)),a}function n(o){i.delete(o)}function s(o,a,l){i.get(o)[a]=l}function r(){i=new WeakMap}return{has:t,get:e,remove:n,update:s,dispose:r}}function Zw(i,t){return i.groupOrder!==t.groupOrder?i.groupOrder-t.groupOrder:i.renderOrder!==t.renderOrder?i.renderOrder-t.renderOrder:i.material.id!==t.material.id?i.material.id-t.material.id:i.z!==t.z?i.z-t.z:i.id-t.id}function hg(i,t){return i.groupOrder!==t.groupOrder?i.groupOrder-t.groupOrder:i.renderOrder!==t.renderOrder?i.renderOrder-t.renderOrder:i.z!==t.z?t.z-i.z:i.id-t.id}function ug(){let i=[],t=0,e=[],n=[],s=[];function r(){t=0,e.length=0,n.length=0,s.length=0}function o(d,h,f,g,_,m){let p=i[t];return p===void 0?(p={id:d.id,object:d,geometry:h,material:f,groupOrder:g,renderOrder:d.renderOrder,z:_,group:m},i[t]=p):(p.id=d.id,p.object=d,p.geometry=h,p.material=f,p.groupOrder=g,p.renderOrder=d.renderOrder,p.z=_,p.group=m),t++,p}function a(d,h,f,g,_,m){let p=o(d,h,f,g,_,m);f.transmission>0?n.push(p):f.transparent===!0?s.push(p):e.push(p)}function l(d,h,f,g,_,m){let p=o(d,h,f,g,_,m);f.transmission>0?n.unshift(p):f.transparent===!0?s.unshift(p):e.unshift(p)}function c(d,h){e.length>1&&e.sort(d||Zw),n.length>1&&n.sort(h||hg),s.length>1&&s.sort(h||hg)}function u(){for(let d=t,h=i.length;d<h;d++){let f=i[d];if(f.id===null)break;f.id=null,f.object=null,f.geometry=null,f.material=null,f.group=null}}return{opaque:e,transmissive:n,transparent:s,init:r,push:a,unshift:l,finish:u,sort:c}}function Jw(){let i=new WeakMap;function t(n,s){let r=i.get(n),o;return r===void 0?(o=new ug,i.set(n,[o])):s>=r.length?(o=new ug,r.push(o)):o=r[s],o}function e(){i=new WeakMap}return{get:t,dispose:e}}function Kw(){let i={};return{get:function(t){if(i[t.id]!==void 0)return i[t.id];let e;switch(t.type){case"DirectionalLight":e={direction:new D,color:new oe};break;case"SpotLight":e={position:new D,direction:new D,color:new oe,distance:0,coneCos:0,penumbraCos:0,decay:0};break;case"PointLight":e={position:new D,color:new oe,distance:0,decay:0};break;case"HemisphereLight":e={direction:new D,skyColor:new oe,groundColor:new oe};break;case"RectAreaLight":e={color:new oe,position:new D,halfWidth:new D,halfHeight:new D};break}return i[t.id]=e,e}}}function jw(){let i={};return{get:function(t){if(i[t.id]!==void 0)return i[t.id];let e;switch(t.type){case"DirectionalLight":e={shadowIntensity:1,shadowBias:0,shadowNormalBias:0,shadowRadius:1,shadowMapSize:new gt};break;case"SpotLight":e={shadowIntensity:1,shadowBias:0,shadowNormalBias:0,shadowRadius:1,shadowMapSize:new gt};break;case"PointLight":e={shadowIntensity:1,shadowBias:0,shadowNormalBias:0,shadowRadius:1,shadowMapSize:new gt,shadowCameraNear:1,shadowCameraFar:1e3};break}return i[t.id]=e,e}}}var Qw=0;function t1(i,t){return(t.castShadow?2:0)-(i.castShadow?2:0)+(t.map?1:0)-(i.map?1:0)}function e1(i){let t=new Kw,e=jw(),n={version:0,hash:{directionalLength:-1,pointLength:-1,spotLength:-1,rectAreaLength:-1,hemiLength:-1,numDirectionalShadows:-1,numPointShadows:-1,numSpotShadows:-1,numSpotMaps:-1,numLightProbes:-1},ambient:[0,0,0],probe:[],directional:[],directionalShadow:[],directionalShadowMap:[],directionalShadowMatrix:[],spot:[],spotLightMap:[],spotShadow:[],spotShadowMap:[],spotLightMatrix:[],rectArea:[],rectAreaLTC1:null,rectAreaLTC2:null,point:[],pointShadow:[],pointShadowMap:[],pointShadowMatrix:[],hemi:[],numSpotLightShadowsWithMaps:0,numLightProbes:0};for(let c=0;c<9;c++)n.probe.push(new D);let s=new D,r=new Ge,o=new Ge;function a(c){let u=0,d=0,h=0;for(let E=0;E<9;E++)n.probe[E].set(0,0,0);let f=0,g=0,_=0,m=0,p=0,b=0,y=0,v=0,N=0,P=0,R=0;c.sort(t1);for(let E=0,M=c.length;E<M;E++){let A=c[E],W=A.color,G=A.intensity,X=A.distance,Z=A.shadow&&A.shadow.map?A.shadow.map.texture:null;if(A.isAmbientLight)u+=W.r*G,d+=W.g*G,h+=W.b*G;else if(A.isLightProbe){for(let Y=0;Y<9;Y++)n.probe[Y].addScaledVector(A.sh.coefficients[Y],G);R++}else if(A.isDirectionalLight){let Y=t.get(A);if(Y.color.copy(A.color).multiplyScalar(A.intensity),A.castShadow){let nt=A.shadow,Q=e.get(A);Q.shadowIntensity=nt.intensity,Q.shadowBias=nt.bias,Q.shadowNormalBias=nt.normalBias,Q.shadowRadius=nt.radius,Q.shadowMapSize=nt.mapSize,n.directionalShadow[f]=Q,n.directionalShadowMap[f]=Z,n.directionalShadowMatrix[f]=A.shadow.matrix,b++}n.directional[f]=Y,f++}else if(A.isSpotLight){let Y=t.get(A);Y.position.setFromMatrixPosition(A.matrixWorld),Y.color.copy(W).multiplyScalar(G),Y.distance=X,Y.coneCos=Math.cos(A.angle),Y.penumbraCos=Math.cos(A.angle*(1-A.penumbra)),Y.decay=A.decay,n.spot[_]=Y;let nt=A.shadow;if(A.map&&(n.spotLightMap[N]=A.map,N++,nt.updateMatrices(A),A.castShadow&&P++),n.spotLightMatrix[_]=nt.matrix,A.castShadow){let Q=e.get(A);Q.shadowIntensity=nt.intensity,Q.shadowBias=nt.bias,Q.shadowNormalBias=nt.normalBias,Q.shadowRadius=nt.radius,Q.shadowMapSize=nt.mapSize,n.spotShadow[_]=Q,n.spotShadowMap[_]=Z,v++}_++}else if(A.isRectAreaLight){let Y=t.get(A);Y.color.copy(W).multiplyScalar(G),Y.halfWidth.set(A.width*.5,0,0),Y.halfHeight.set(0,A.height*.5,0),n.rectArea[m]=Y,m++}else if(A.isPointLight){let Y=t.get(A);if(Y.color.copy(A.color).multiplyScalar(A.intensity),Y.distance=A.distance,Y.decay=A.decay,A.castShadow){let nt=A.shadow,Q=e.get(A);Q.shadowIntensity=nt.intensity,Q.shadowBias=nt.bias,Q.shadowNormalBias=nt.normalBias,Q.shadowRadius=nt.radius,Q.shadowMapSize=nt.mapSize,Q.shadowCameraNear=nt.camera.near,Q.shadowCameraFar=nt.camera.far,n.pointShadow[g]=Q,n.pointShadowMap[g]=Z,n.pointShadowMatrix[g]=A.shadow.matrix,y++}n.point[g]=Y,g++}else if(A.isHemisphereLight){let Y=t.get(A);Y.skyColor.copy(A.color).multiplyScalar(G),Y.groundColor.copy(A.groundColor).multiplyScalar(G),n.hemi[p]=Y,p++}}m>0&&(i.has("OES_texture_float_linear")===!0?(n.rectAreaLTC1=St.LTC_FLOAT_1,n.rectAreaLTC2=St.LTC_FLOAT_2):(n.rectAreaLTC1=St.LTC_HALF_1,n.rectAreaLTC2=St.LTC_HALF_2)),n.ambient[0]=u,n.ambient[1]=d,n.ambient[2]=h;let F=n.hash;(F.directionalLength!==f||F.pointLength!==g||F.spotLength!==_||F.rectAreaLength!==m||F.hemiLength!==p||F.numDirectionalShadows!==b||F.numPointShadows!==y||F.numSpotShadows!==v||F.numSpotMaps!==N||F.numLightProbes!==R)&&(n.directional.length=f,n.spot.length=_,n.rectArea.length=m,n.point.length=g,n.hemi.length=p,n.directionalShadow.length=b,n.directionalShadowMap.length=b,n.pointShadow.length=y,n.pointShadowMap.length=y,n.spotShadow.length=v,n.spotShadowMap.length=v,n.directionalShadowMatrix.length=b,n.pointShadowMatrix.length=y,n.spotLightMatrix.length=v+N-P,n.spotLightMap.length=N,n.numSpotLightShadowsWithMaps=P,n.numLightProbes=R,F.directionalLength=f,F.pointLength=g,F.spotLength=_,F.rectAreaLength=m,F.hemiLength=p,F.numDirectionalShadows=b,F.numPointShadows=y,F.numSpotShadows=v,F.numSpotMaps=N,F.numLightProbes=R,n.version=Qw++)}function l(c,u){let d=0,h=0,f=0,g=0,_=0,m=u.matrixWorldInverse;for(let p=0,b=c.length;p<b;p++){let y=c[p];if(y.isDirectionalLight){let v=n.directional[d];v.direction.setFromMatrixPosition(y.matrixWorld),s.setFromMatrixPosition(y.target.matrixWorld),v.direction.sub(s),v.direction.transformDirection(m),d++}else if(y.isSpotLight){let v=n.spot[f];v.position.setFromMatrixPosition(y.matrixWorld),v.position.applyMatrix4(m),v.direction.setFromMatrixPosition(y.matrixWorld),s.setFromMatrixPosition(y.target.matrixWorld),v.direction.sub(s),v.direction.transformDirection(m),f++}else if(y.isRectAreaLight){let v=n.rectArea[g];v.position.setFromMatrixPosition(y.matrixWorld),v.position.applyMatrix4(m),o.identity(),r.copy(y.matrixWorld),r.premultiply(m),o.extractRotation(r),v.halfWidth.set(y.width*.5,0,0),v.halfHeight.set(0,y.height*.5,0),v.halfWidth.applyMatrix4(o),v.halfHeight.applyMatrix4(o),g++}else if(y.isPointLight){let v=n.point[h];v.position.setFromMatrixPosition(y.matrixWorld),v.position.applyMatrix4(m),h++}else if(y.isHemisphereLight){let v=n.hemi[_];v.direction.setFromMatrixPosition(y.matrixWorld),v.direction.transformDirection(m),_++}}}return{setup:a,setupView:l,state:n}}function dg(i){let t=new e1(i),e=[],n=[];function s(u){c.camera=u,e.length=0,n.length=0}function r(u){e.push(u)}function o(u){n.push(u)}function a(){t.setup(e)}function l(u){t.setupView(e,u)}let c={lightsArray:e,shadowsArray:n,camera:null,lights:t,transmissionRenderTarget:{}};return{init:s,state:c,setupLights:a,setupLightsView:l,pushLight:r,pushShadow:o}}function n1(i){let t=new WeakMap;function e(s,r=0){let o=t.get(s),a;return o===void 0?(a=new dg(i),t.set(s,[a])):r>=o.length?(a=new dg(i),o.push(a)):a=o[r],a}function n(){t=new WeakMap}return{get:e,dispose:n}}var nd=class extends Us{static get type(){return"MeshDepthMaterial"}constructor(t){super(),this.isMeshDepthMaterial=!0,this.depthPacking=Zy,this.map=null,this.alphaMap=null,this.displacementMap=null,this.displacementScale=1,this.displacementBias=0,this.wireframe=!1,this.wireframeLinewidth=1,this.setValues(t)}copy(t){return super.copy(t),this.depthPacking=t.depthPacking,this.map=t.map,this.alphaMap=t.alphaMap,this.displacementMap=t.displacementMap,this.displacementScale=t.displacementScale,this.displacementBias=t.displacementBias,this.wireframe=t.wireframe,this.wireframeLinewidth=t.wireframeLinewidth,this}},id=class extends Us{static get type(){return"MeshDistanceMaterial"}constructor(t){super(),this.isMeshDistanceMaterial=!0,this.map=null,this.alphaMap=null,this.displacementMap=null,this.displacementScale=1,this.displacementBias=0,this.setValues(t)}copy(t){return super.copy(t),this.map=t.map,this.alphaMap=t.alphaMap,this.displacementMap=t.displacementMap,this.displacementScale=t.displacementScale,this.displacementBias=t.displacementBias,this}},i1=`void main() {
+	gl_Position = vec4( position, 1.0 );
+}`,s1=`uniform sampler2D shadow_pass;
+uniform vec2 resolution;
+uniform float radius;
+#include <packing>
+void main() {
+	const float samples = float( VSM_SAMPLES );
+	float mean = 0.0;
+	float squared_mean = 0.0;
+	float uvStride = samples <= 1.0 ? 0.0 : 2.0 / ( samples - 1.0 );
+	float uvStart = samples <= 1.0 ? 0.0 : - 1.0;
+	for ( float i = 0.0; i < samples; i ++ ) {
+		float uvOffset = uvStart + i * uvStride;
+		#ifdef HORIZONTAL_PASS
+			vec2 distribution = unpackRGBATo2Half( texture2D( shadow_pass, ( gl_FragCoord.xy + vec2( uvOffset, 0.0 ) * radius ) / resolution ) );
+			mean += distribution.x;
+			squared_mean += distribution.y * distribution.y + distribution.x * distribution.x;
+		#else
+			float depth = unpackRGBAToDepth( texture2D( shadow_pass, ( gl_FragCoord.xy + vec2( 0.0, uvOffset ) * radius ) / resolution ) );
+			mean += depth;
+			squared_mean += depth * depth;
+		#endif
+	}
+	mean = mean / samples;
+	squared_mean = squared_mean / samples;
+	float std_dev = sqrt( squared_mean - mean * mean );
+	gl_FragColor = pack2HalfToRGBA( vec2( mean, std_dev ) );
+}`;function r1(i,t,e){let n=new Ko,s=new gt,r=new gt,o=new De,a=new nd({depthPacking:Jy}),l=new id,c={},u=e.maxTextureSize,d={[Ds]:zn,[zn]:Ds,[Mi]:Mi},h=new hi({defines:{VSM_SAMPLES:8},uniforms:{shadow_pass:{value:null},resolution:{value:new gt},radius:{value:4}},vertexShader:i1,fragmentShader:s1}),f=h.clone();f.defines.HORIZONTAL_PASS=1;let g=new we;g.setAttribute("position",new Kn(new Float32Array([-1,-1,.5,3,-1,.5,-1,3,.5]),3));let _=new _e(g,h),m=this;this.enabled=!1,this.autoUpdate=!0,this.needsUpdate=!1,this.type=Tg;let p=this.type;this.render=function(P,R,F){if(m.enabled===!1||m.autoUpdate===!1&&m.needsUpdate===!1||P.length===0)return;let E=i.getRenderTarget(),M=i.getActiveCubeFace(),A=i.getActiveMipmapLevel(),W=i.state;W.setBlending(Ps),W.buffers.color.setClear(1,1,1,1),W.buffers.depth.setTest(!0),W.setScissorTest(!1);let G=p!==rs&&this.type===rs,X=p===rs&&this.type!==rs;for(let Z=0,Y=P.length;Z<Y;Z++){let nt=P[Z],Q=nt.shadow;if(Q===void 0){console.warn("THREE.WebGLShadowMap:",nt,"has no shadow.");continue}if(Q.autoUpdate===!1&&Q.needsUpdate===!1)continue;s.copy(Q.mapSize);let ft=Q.getFrameExtents();if(s.multiply(ft),r.copy(Q.mapSize),(s.x>u||s.y>u)&&(s.x>u&&(r.x=Math.floor(u/ft.x),s.x=r.x*ft.x,Q.mapSize.x=r.x),s.y>u&&(r.y=Math.floor(u/ft.y),s.y=r.y*ft.y,Q.mapSize.y=r.y)),Q.map===null||G===!0||X===!0){let _t=this.type!==rs?{minFilter:wi,magFilter:wi}:{};Q.map!==null&&Q.map.dispose(),Q.map=new us(s.x,s.y,_t),Q.map.texture.name=nt.name+".shadowMap",Q.camera.updateProjectionMatrix()}i.setRenderTarget(Q.map),i.clear();let at=Q.getViewportCount();for(let _t=0;_t<at;_t++){let pt=Q.getViewport(_t);o.set(r.x*pt.x,r.y*pt.y,r.x*pt.z,r.y*pt.w),W.viewport(o),Q.updateMatrices(nt,_t),n=Q.getFrustum(),v(R,F,Q.camera,nt,this.type)}Q.isPointLightShadow!==!0&&this.type===rs&&b(Q,F),Q.needsUpdate=!1}p=this.type,m.needsUpdate=!1,i.setRenderTarget(E,M,A)};function b(P,R){let F=t.update(_);h.defines.VSM_SAMPLES!==P.blurSamples&&(h.defines.VSM_SAMPLES=P.blurSamples,f.defines.VSM_SAMPLES=P.blurSamples,h.needsUpdate=!0,f.needsUpdate=!0),P.mapPass===null&&(P.mapPass=new us(s.x,s.y)),h.uniforms.shadow_pass.value=P.map.texture,h.uniforms.resolution.value=P.mapSize,h.uniforms.radius.value=P.radius,i.setRenderTarget(P.mapPass),i.clear(),i.renderBufferDirect(R,null,F,h,_,null),f.uniforms.shadow_pass.value=P.mapPass.texture,f.uniforms.resolution.value=P.mapSize,f.uniforms.radius.value=P.radius,i.setRenderTarget(P.map),i.clear(),i.renderBufferDirect(R,null,F,f,_,null)}function y(P,R,F,E){let M=null,A=F.isPointLight===!0?P.customDistanceMaterial:P.customDepthMaterial;if(A!==void 0)M=A;else if(M=F.isPointLight===!0?l:a,i.localClippingEnabled&&R.clipShadows===!0&&Array.isArray(R.clippingPlanes)&&R.clippingPlanes.length!==0||R.displacementMap&&R.displacementScale!==0||R.alphaMap&&R.alphaTest>0||R.map&&R.alphaTest>0){let W=M.uuid,G=R.uuid,X=c[W];X===void 0&&(X={},c[W]=X);let Z=X[G];Z===void 0&&(Z=M.clone(),X[G]=Z,R.addEventListener("dispose",N)),M=Z}if(M.visible=R.visible,M.wireframe=R.wireframe,E===rs?M.side=R.shadowSide!==null?R.shadowSide:R.side:M.side=R.shadowSide!==null?R.shadowSide:d[R.side],M.alphaMap=R.alphaMap,M.alphaTest=R.alphaTest,M.map=R.map,M.clipShadows=R.clipShadows,M.clippingPlanes=R.clippingPlanes,M.clipIntersection=R.clipIntersection,M.displacementMap=R.displacementMap,M.displacementScale=R.displacementScale,M.displacementBias=R.displacementBias,M.wireframeLinewidth=R.wireframeLinewidth,M.linewidth=R.linewidth,F.isPointLight===!0&&M.isMeshDistanceMaterial===!0){let W=i.properties.get(M);W.light=F}return M}function v(P,R,F,E,M){if(P.visible===!1)return;if(P.layers.test(R.layers)&&(P.isMesh||P.isLine||P.isPoints)&&(P.castShadow||P.receiveShadow&&M===rs)&&(!P.frustumCulled||n.intersectsObject(P))){P.modelViewMatrix.multiplyMatrices(F.matrixWorldInverse,P.matrixWorld);let G=t.update(P),X=P.material;if(Array.isArray(X)){let Z=G.groups;for(let Y=0,nt=Z.length;Y<nt;Y++){let Q=Z[Y],ft=X[Q.materialIndex];if(ft&&ft.visible){let at=y(P,ft,E,M);P.onBeforeShadow(i,P,R,F,G,at,Q),i.renderBufferDirect(F,null,G,at,P,Q),P.onAfterShadow(i,P,R,F,G,at,Q)}}}else if(X.visible){let Z=y(P,X,E,M);P.onBeforeShadow(i,P,R,F,G,Z,null),i.renderBufferDirect(F,null,G,Z,P,null),P.onAfterShadow(i,P,R,F,G,Z,null)}}let W=P.children;for(let G=0,X=W.length;G<X;G++)v(W[G],R,F,E,M)}function N(P){P.target.removeEventListener("dispose",N);for(let F in c){let E=c[F],M=P.target.uuid;M in E&&(E[M].dispose(),delete E[M])}}}var o1={[ou]:au,[lu]:uu,[cu]:du,[so]:hu,[au]:ou,[uu]:lu,[du]:cu,[hu]:so};function a1(i,t){function e(){let B=!1,Et=new De,it=null,ot=new De(0,0,0,0);return{setMask:function(It){it!==It&&!B&&(i.colorMask(It,It,It,It),it=It)},setLocked:function(It){B=It},setClear:function(It,Pt,se,We,Bt){Bt===!0&&(It*=We,Pt*=We,se*=We),Et.set(It,Pt,se,We),ot.equals(Et)===!1&&(i.clearColor(It,Pt,se,We),ot.copy(Et))},reset:function(){B=!1,it=null,ot.set(-1,0,0,0)}}}function n(){let B=!1,Et=!1,it=null,ot=null,It=null;return{setReversed:function(Pt){if(Et!==Pt){let se=t.get("EXT_clip_control");Et?se.clipControlEXT(se.LOWER_LEFT_EXT,se.ZERO_TO_ONE_EXT):se.clipControlEXT(se.LOWER_LEFT_EXT,se.NEGATIVE_ONE_TO_ONE_EXT);let We=It;It=null,this.setClear(We)}Et=Pt},getReversed:function(){return Et},setTest:function(Pt){Pt?lt(i.DEPTH_TEST):Ft(i.DEPTH_TEST)},setMask:function(Pt){it!==Pt&&!B&&(i.depthMask(Pt),it=Pt)},setFunc:function(Pt){if(Et&&(Pt=o1[Pt]),ot!==Pt){switch(Pt){case ou:i.depthFunc(i.NEVER);break;case au:i.depthFunc(i.ALWAYS);break;case lu:i.depthFunc(i.LESS);break;case so:i.depthFunc(i.LEQUAL);break;case cu:i.depthFunc(i.EQUAL);break;case hu:i.depthFunc(i.GEQUAL);break;case uu:i.depthFunc(i.GREATER);break;case du:i.depthFunc(i.NOTEQUAL);break;default:i.depthFunc(i.LEQUAL)}ot=Pt}},setLocked:function(Pt){B=Pt},setClear:function(Pt){It!==Pt&&(Et&&(Pt=1-Pt),i.clearDepth(Pt),It=Pt)},reset:function(){B=!1,it=null,ot=null,It=null,Et=!1}}}function s(){let B=!1,Et=null,it=null,ot=null,It=null,Pt=null,se=null,We=null,Bt=null;return{setTest:function(he){B||(he?lt(i.STENCIL_TEST):Ft(i.STENCIL_TEST))},setMask:function(he){Et!==he&&!B&&(i.stencilMask(he),Et=he)},setFunc:function(he,Pe,un){(it!==he||ot!==Pe||It!==un)&&(i.stencilFunc(he,Pe,un),it=he,ot=Pe,It=un)},setOp:function(he,Pe,un){(Pt!==he||se!==Pe||We!==un)&&(i.stencilOp(he,Pe,un),Pt=he,se=Pe,We=un)},setLocked:function(he){B=he},setClear:function(he){Bt!==he&&(i.clearStencil(he),Bt=he)},reset:function(){B=!1,Et=null,it=null,ot=null,It=null,Pt=null,se=null,We=null,Bt=null}}}let r=new e,o=new n,a=new s,l=new WeakMap,c=new WeakMap,u={},d={},h=new WeakMap,f=[],g=null,_=!1,m=null,p=null,b=null,y=null,v=null,N=null,P=null,R=new oe(0,0,0),F=0,E=!1,M=null,A=null,W=null,G=null,X=null,Z=i.getParameter(i.MAX_COMBINED_TEXTURE_IMAGE_UNITS),Y=!1,nt=0,Q=i.getParameter(i.VERSION);Q.indexOf("WebGL")!==-1?(nt=parseFloat(/^WebGL (\d)/.exec(Q)[1]),Y=nt>=1):Q.indexOf("OpenGL ES")!==-1&&(nt=parseFloat(/^OpenGL ES (\d)/.exec(Q)[1]),Y=nt>=2);let ft=null,at={},_t=i.getParameter(i.SCISSOR_BOX),pt=i.getParameter(i.VIEWPORT),Zt=new De().fromArray(_t),J=new De().fromArray(pt);function ht(B,Et,it,ot){let It=new Uint8Array(4),Pt=i.createTexture();i.bindTexture(B,Pt),i.texParameteri(B,i.TEXTURE_MIN_FILTER,i.NEAREST),i.texParameteri(B,i.TEXTURE_MAG_FILTER,i.NEAREST);for(let se=0;se<it;se++)B===i.TEXTURE_3D||B===i.TEXTURE_2D_ARRAY?i.texImage3D(Et,0,i.RGBA,1,1,ot,0,i.RGBA,i.UNSIGNED_BYTE,It):i.texImage2D(Et+se,0,i.RGBA,1,1,0,i.RGBA,i.UNSIGNED_BYTE,It);return Pt}let Ot={};Ot[i.TEXTURE_2D]=ht(i.TEXTURE_2D,i.TEXTURE_2D,1),Ot[i.TEXTURE_CUBE_MAP]=ht(i.TEXTURE_CUBE_MAP,i.TEXTURE_CUBE_MAP_POSITIVE_X,6),Ot[i.TEXTURE_2D_ARRAY]=ht(i.TEXTURE_2D_ARRAY,i.TEXTURE_2D_ARRAY,1,1),Ot[i.TEXTURE_3D]=ht(i.TEXTURE_3D,i.TEXTURE_3D,1,1),r.setClear(0,0,0,1),o.setClear(1),a.setClear(0),lt(i.DEPTH_TEST),o.setFunc(so),ut(!1),Tt(pm),lt(i.CULL_FACE),U(Ps);function lt(B){u[B]!==!0&&(i.enable(B),u[B]=!0)}function Ft(B){u[B]!==!1&&(i.disable(B),u[B]=!1)}function Yt(B,Et){return d[B]!==Et?(i.bindFramebuffer(B,Et),d[B]=Et,B===i.DRAW_FRAMEBUFFER&&(d[i.FRAMEBUFFER]=Et),B===i.FRAMEBUFFER&&(d[i.DRAW_FRAMEBUFFER]=Et),!0):!1}function Ut(B,Et){let it=f,ot=!1;if(B){it=h.get(Et),it===void 0&&(it=[],h.set(Et,it));let It=B.textures;if(it.length!==It.length||it[0]!==i.COLOR_ATTACHMENT0){for(let Pt=0,se=It.length;Pt<se;Pt++)it[Pt]=i.COLOR_ATTACHMENT0+Pt;it.length=It.length,ot=!0}}else it[0]!==i.BACK&&(it[0]=i.BACK,ot=!0);ot&&i.drawBuffers(it)}function Qt(B){return g!==B?(i.useProgram(B),g=B,!0):!1}let st={[nr]:i.FUNC_ADD,[Sy]:i.FUNC_SUBTRACT,[by]:i.FUNC_REVERSE_SUBTRACT};st[wy]=i.MIN,st[Ey]=i.MAX;let mt={[Ty]:i.ZERO,[Ay]:i.ONE,[Cy]:i.SRC_COLOR,[su]:i.SRC_ALPHA,[Uy]:i.SRC_ALPHA_SATURATE,[Ly]:i.DST_COLOR,[Py]:i.DST_ALPHA,[Ry]:i.ONE_MINUS_SRC_COLOR,[ru]:i.ONE_MINUS_SRC_ALPHA,[Dy]:i.ONE_MINUS_DST_COLOR,[Iy]:i.ONE_MINUS_DST_ALPHA,[Ny]:i.CONSTANT_COLOR,[Fy]:i.ONE_MINUS_CONSTANT_COLOR,[Oy]:i.CONSTANT_ALPHA,[By]:i.ONE_MINUS_CONSTANT_ALPHA};function U(B,Et,it,ot,It,Pt,se,We,Bt,he){if(B===Ps){_===!0&&(Ft(i.BLEND),_=!1);return}if(_===!1&&(lt(i.BLEND),_=!0),B!==My){if(B!==m||he!==E){if((p!==nr||v!==nr)&&(i.blendEquation(i.FUNC_ADD),p=nr,v=nr),he)switch(B){case Qr:i.blendFuncSeparate(i.ONE,i.ONE_MINUS_SRC_ALPHA,i.ONE,i.ONE_MINUS_SRC_ALPHA);break;case mm:i.blendFunc(i.ONE,i.ONE);break;case gm:i.blendFuncSeparate(i.ZERO,i.ONE_MINUS_SRC_COLOR,i.ZERO,i.ONE);break;case _m:i.blendFuncSeparate(i.ZERO,i.SRC_COLOR,i.ZERO,i.SRC_ALPHA);break;default:console.error("THREE.WebGLState: Invalid blending: ",B);break}else switch(B){case Qr:i.blendFuncSeparate(i.SRC_ALPHA,i.ONE_MINUS_SRC_ALPHA,i.ONE,i.ONE_MINUS_SRC_ALPHA);break;case mm:i.blendFunc(i.SRC_ALPHA,i.ONE);break;case gm:i.blendFuncSeparate(i.ZERO,i.ONE_MINUS_SRC_COLOR,i.ZERO,i.ONE);break;case _m:i.blendFunc(i.ZERO,i.SRC_COLOR);break;default:console.error("THREE.WebGLState: Invalid blending: ",B);break}b=null,y=null,N=null,P=null,R.set(0,0,0),F=0,m=B,E=he}return}It=It||Et,Pt=Pt||it,se=se||ot,(Et!==p||It!==v)&&(i.blendEquationSeparate(st[Et],st[It]),p=Et,v=It),(it!==b||ot!==y||Pt!==N||se!==P)&&(i.blendFuncSeparate(mt[it],mt[ot],mt[Pt],mt[se]),b=it,y=ot,N=Pt,P=se),(We.equals(R)===!1||Bt!==F)&&(i.blendColor(We.r,We.g,We.b,Bt),R.copy(We),F=Bt),m=B,E=!1}function Vt(B,Et){B.side===Mi?Ft(i.CULL_FACE):lt(i.CULL_FACE);let it=B.side===zn;Et&&(it=!it),ut(it),B.blending===Qr&&B.transparent===!1?U(Ps):U(B.blending,B.blendEquation,B.blendSrc,B.blendDst,B.blendEquationAlpha,B.blendSrcAlpha,B.blendDstAlpha,B.blendColor,B.blendAlpha,B.premultipliedAlpha),o.setFunc(B.depthFunc),o.setTest(B.depthTest),o.setMask(B.depthWrite),r.setMask(B.colorWrite);let ot=B.stencilWrite;a.setTest(ot),ot&&(a.setMask(B.stencilWriteMask),a.setFunc(B.stencilFunc,B.stencilRef,B.stencilFuncMask),a.setOp(B.stencilFail,B.stencilZFail,B.stencilZPass)),Jt(B.polygonOffset,B.polygonOffsetFactor,B.polygonOffsetUnits),B.alphaToCoverage===!0?lt(i.SAMPLE_ALPHA_TO_COVERAGE):Ft(i.SAMPLE_ALPHA_TO_COVERAGE)}function ut(B){M!==B&&(B?i.frontFace(i.CW):i.frontFace(i.CCW),M=B)}function Tt(B){B!==xy?(lt(i.CULL_FACE),B!==A&&(B===pm?i.cullFace(i.BACK):B===yy?i.cullFace(i.FRONT):i.cullFace(i.FRONT_AND_BACK))):Ft(i.CULL_FACE),A=B}function xt(B){B!==W&&(Y&&i.lineWidth(B),W=B)}function Jt(B,Et,it){B?(lt(i.POLYGON_OFFSET_FILL),(G!==Et||X!==it)&&(i.polygonOffset(Et,it),G=Et,X=it)):Ft(i.POLYGON_OFFSET_FILL)}function bt(B){B?lt(i.SCISSOR_TEST):Ft(i.SCISSOR_TEST)}function C(B){B===void 0&&(B=i.TEXTURE0+Z-1),ft!==B&&(i.activeTexture(B),ft=B)}function S(B,Et,it){it===void 0&&(ft===null?it=i.TEXTURE0+Z-1:it=ft);let ot=at[it];ot===void 0&&(ot={type:void 0,texture:void 0},at[it]=ot),(ot.type!==B||ot.texture!==Et)&&(ft!==it&&(i.activeTexture(it),ft=it),i.bindTexture(B,Et||Ot[B]),ot.type=B,ot.texture=Et)}function O(){let B=at[ft];B!==void 0&&B.type!==void 0&&(i.bindTexture(B.type,null),B.type=void 0,B.texture=void 0)}function tt(){try{i.compressedTexImage2D.apply(i,arguments)}catch(B){console.error("THREE.WebGLState:",B)}}function j(){try{i.compressedTexImage3D.apply(i,arguments)}catch(B){console.error("THREE.WebGLState:",B)}}function et(){try{i.texSubImage2D.apply(i,arguments)}catch(B){console.error("THREE.WebGLState:",B)}}function Nt(){try{i.texSubImage3D.apply(i,arguments)}catch(B){console.error("THREE.WebGLState:",B)}}function Mt(){try{i.compressedTexSubImage2D.apply(i,arguments)}catch(B){console.error("THREE.WebGLState:",B)}}function At(){try{i.compressedTexSubImage3D.apply(i,arguments)}catch(B){console.error("THREE.WebGLState:",B)}}function Kt(){try{i.texStorage2D.apply(i,arguments)}catch(B){console.error("THREE.WebGLState:",B)}}function ct(){try{i.texStorage3D.apply(i,arguments)}catch(B){console.error("THREE.WebGLState:",B)}}function wt(){try{i.texImage2D.apply(i,arguments)}catch(B){console.error("THREE.WebGLState:",B)}}function Xt(){try{i.texImage3D.apply(i,arguments)}catch(B){console.error("THREE.WebGLState:",B)}}function $t(B){Zt.equals(B)===!1&&(i.scissor(B.x,B.y,B.z,B.w),Zt.copy(B))}function Rt(B){J.equals(B)===!1&&(i.viewport(B.x,B.y,B.z,B.w),J.copy(B))}function ae(B,Et){let it=c.get(Et);it===void 0&&(it=new WeakMap,c.set(Et,it));let ot=it.get(B);ot===void 0&&(ot=i.getUniformBlockIndex(Et,B.name),it.set(B,ot))}function te(B,Et){let ot=c.get(Et).get(B);l.get(Et)!==ot&&(i.uniformBlockBinding(Et,ot,B.__bindingPointIndex),l.set(Et,ot))}function Se(){i.disable(i.BLEND),i.disable(i.CULL_FACE),i.disable(i.DEPTH_TEST),i.disable(i.POLYGON_OFFSET_FILL),i.disable(i.SCISSOR_TEST),i.disable(i.STENCIL_TEST),i.disable(i.SAMPLE_ALPHA_TO_COVERAGE),i.blendEquation(i.FUNC_ADD),i.blendFunc(i.ONE,i.ZERO),i.blendFuncSeparate(i.ONE,i.ZERO,i.ONE,i.ZERO),i.blendColor(0,0,0,0),i.colorMask(!0,!0,!0,!0),i.clearColor(0,0,0,0),i.depthMask(!0),i.depthFunc(i.LESS),o.setReversed(!1),i.clearDepth(1),i.stencilMask(4294967295),i.stencilFunc(i.ALWAYS,0,4294967295),i.stencilOp(i.KEEP,i.KEEP,i.KEEP),i.clearStencil(0),i.cullFace(i.BACK),i.frontFace(i.CCW),i.polygonOffset(0,0),i.activeTexture(i.TEXTURE0),i.bindFramebuffer(i.FRAMEBUFFER,null),i.bindFramebuffer(i.DRAW_FRAMEBUFFER,null),i.bindFramebuffer(i.READ_FRAMEBUFFER,null),i.useProgram(null),i.lineWidth(1),i.scissor(0,0,i.canvas.width,i.canvas.height),i.viewport(0,0,i.canvas.width,i.canvas.height),u={},ft=null,at={},d={},h=new WeakMap,f=[],g=null,_=!1,m=null,p=null,b=null,y=null,v=null,N=null,P=null,R=new oe(0,0,0),F=0,E=!1,M=null,A=null,W=null,G=null,X=null,Zt.set(0,0,i.canvas.width,i.canvas.height),J.set(0,0,i.canvas.width,i.canvas.height),r.reset(),o.reset(),a.reset()}return{buffers:{color:r,depth:o,stencil:a},enable:lt,disable:Ft,bindFramebuffer:Yt,drawBuffers:Ut,useProgram:Qt,setBlending:U,setMaterial:Vt,setFlipSided:ut,setCullFace:Tt,setLineWidth:xt,setPolygonOffset:Jt,setScissorTest:bt,activeTexture:C,bindTexture:S,unbindTexture:O,compressedTexImage2D:tt,compressedTexImage3D:j,texImage2D:wt,texImage3D:Xt,updateUBOMapping:ae,uniformBlockBinding:te,texStorage2D:Kt,texStorage3D:ct,texSubImage2D:et,texSubImage3D:Nt,compressedTexSubImage2D:Mt,compressedTexSubImage3D:At,scissor:$t,viewport:Rt,reset:Se}}function fg(i,t,e,n){let s=l1(n);switch(e){case Ig:return i*t;case Dg:return i*t;case Ug:return i*t*2;case Ng:return i*t/s.components*s.byteLength;case Nd:return i*t/s.components*s.byteLength;case Fg:return i*t*2/s.components*s.byteLength;case Fd:return i*t*2/s.components*s.byteLength;case Lg:return i*t*3/s.components*s.byteLength;case bi:return i*t*4/s.components*s.byteLength;case Od:return i*t*4/s.components*s.byteLength;case ml:case gl:return Math.floor((i+3)/4)*Math.floor((t+3)/4)*8;case _l:case xl:return Math.floor((i+3)/4)*Math.floor((t+3)/4)*16;case xu:case vu:return Math.max(i,16)*Math.max(t,8)/4;case _u:case yu:return Math.max(i,8)*Math.max(t,8)/2;case Mu:case Su:return Math.floor((i+3)/4)*Math.floor((t+3)/4)*8;case bu:return Math.floor((i+3)/4)*Math.floor((t+3)/4)*16;case wu:return Math.floor((i+3)/4)*Math.floor((t+3)/4)*16;case Eu:return Math.floor((i+4)/5)*Math.floor((t+3)/4)*16;case Tu:return Math.floor((i+4)/5)*Math.floor((t+4)/5)*16;case Au:return Math.floor((i+5)/6)*Math.floor((t+4)/5)*16;case Cu:return Math.floor((i+5)/6)*Math.floor((t+5)/6)*16;case Ru:return Math.floor((i+7)/8)*Math.floor((t+4)/5)*16;case Pu:return Math.floor((i+7)/8)*Math.floor((t+5)/6)*16;case Iu:return Math.floor((i+7)/8)*Math.floor((t+7)/8)*16;case Lu:return Math.floor((i+9)/10)*Math.floor((t+4)/5)*16;case Du:return Math.floor((i+9)/10)*Math.floor((t+5)/6)*16;case Uu:return Math.floor((i+9)/10)*Math.floor((t+7)/8)*16;case Nu:return Math.floor((i+9)/10)*Math.floor((t+9)/10)*16;case Fu:return Math.floor((i+11)/12)*Math.floor((t+9)/10)*16;case Ou:return Math.floor((i+11)/12)*Math.floor((t+11)/12)*16;case yl:case Bu:case zu:return Math.ceil(i/4)*Math.ceil(t/4)*16;case Og:case ku:return Math.ceil(i/4)*Math.ceil(t/4)*8;case Vu:case Hu:return Math.ceil(i/4)*Math.ceil(t/4)*16}throw new Error(`Unable to determine texture byte length for ${e} format.`)}function l1(i){switch(i){case cs:case Cg:return{byteLength:1,components:1};case Zo:case Rg:case sa:return{byteLength:2,components:1};case Dd:case Ud:return{byteLength:2,components:4};case or:case Ld:case os:return{byteLength:4,components:1};case Pg:return{byteLength:4,components:3}}throw new Error(`Unknown texture type ${i}.`)}function c1(i,t,e,n,s,r,o){let a=t.has("WEBGL_multisampled_render_to_texture")?t.get("WEBGL_multisampled_render_to_texture"):null,l=typeof navigator>"u"?!1:/OculusBrowser/g.test(navigator.userAgent),c=new gt,u=new WeakMap,d,h=new WeakMap,f=!1;try{f=typeof OffscreenCanvas<"u"&&new OffscreenCanvas(1,1).getContext("2d")!==null}catch{}function g(C,S){return f?new OffscreenCanvas(C,S):Sl("canvas")}function _(C,S,O){let tt=1,j=bt(C);if((j.width>O||j.height>O)&&(tt=O/Math.max(j.width,j.height)),tt<1)if(typeof HTMLImageElement<"u"&&C instanceof HTMLImageElement||typeof HTMLCanvasElement<"u"&&C instanceof HTMLCanvasElement||typeof ImageBitmap<"u"&&C instanceof ImageBitmap||typeof VideoFrame<"u"&&C instanceof VideoFrame){let et=Math.floor(tt*j.width),Nt=Math.floor(tt*j.height);d===void 0&&(d=g(et,Nt));let Mt=S?g(et,Nt):d;return Mt.width=et,Mt.height=Nt,Mt.getContext("2d").drawImage(C,0,0,et,Nt),console.warn("THREE.WebGLRenderer: Texture has been resized from ("+j.width+"x"+j.height+") to ("+et+"x"+Nt+")."),Mt}else return"data"in C&&console.warn("THREE.WebGLRenderer: Image in DataTexture is too big ("+j.width+"x"+j.height+")."),C;return C}function m(C){return C.generateMipmaps}function p(C){i.generateMipmap(C)}function b(C){return C.isWebGLCubeRenderTarget?i.TEXTURE_CUBE_MAP:C.isWebGL3DRenderTarget?i.TEXTURE_3D:C.isWebGLArrayRenderTarget||C.isCompressedArrayTexture?i.TEXTURE_2D_ARRAY:i.TEXTURE_2D}function y(C,S,O,tt,j=!1){if(C!==null){if(i[C]!==void 0)return i[C];console.warn("THREE.WebGLRenderer: Attempt to use non-existing WebGL internal format '"+C+"'")}let et=S;if(S===i.RED&&(O===i.FLOAT&&(et=i.R32F),O===i.HALF_FLOAT&&(et=i.R16F),O===i.UNSIGNED_BYTE&&(et=i.R8)),S===i.RED_INTEGER&&(O===i.UNSIGNED_BYTE&&(et=i.R8UI),O===i.UNSIGNED_SHORT&&(et=i.R16UI),O===i.UNSIGNED_INT&&(et=i.R32UI),O===i.BYTE&&(et=i.R8I),O===i.SHORT&&(et=i.R16I),O===i.INT&&(et=i.R32I)),S===i.RG&&(O===i.FLOAT&&(et=i.RG32F),O===i.HALF_FLOAT&&(et=i.RG16F),O===i.UNSIGNED_BYTE&&(et=i.RG8)),S===i.RG_INTEGER&&(O===i.UNSIGNED_BYTE&&(et=i.RG8UI),O===i.UNSIGNED_SHORT&&(et=i.RG16UI),O===i.UNSIGNED_INT&&(et=i.RG32UI),O===i.BYTE&&(et=i.RG8I),O===i.SHORT&&(et=i.RG16I),O===i.INT&&(et=i.RG32I)),S===i.RGB_INTEGER&&(O===i.UNSIGNED_BYTE&&(et=i.RGB8UI),O===i.UNSIGNED_SHORT&&(et=i.RGB16UI),O===i.UNSIGNED_INT&&(et=i.RGB32UI),O===i.BYTE&&(et=i.RGB8I),O===i.SHORT&&(et=i.RGB16I),O===i.INT&&(et=i.RGB32I)),S===i.RGBA_INTEGER&&(O===i.UNSIGNED_BYTE&&(et=i.RGBA8UI),O===i.UNSIGNED_SHORT&&(et=i.RGBA16UI),O===i.UNSIGNED_INT&&(et=i.RGBA32UI),O===i.BYTE&&(et=i.RGBA8I),O===i.SHORT&&(et=i.RGBA16I),O===i.INT&&(et=i.RGBA32I)),S===i.RGB&&O===i.UNSIGNED_INT_5_9_9_9_REV&&(et=i.RGB9_E5),S===i.RGBA){let Nt=j?ic:ve.getTransfer(tt);O===i.FLOAT&&(et=i.RGBA32F),O===i.HALF_FLOAT&&(et=i.RGBA16F),O===i.UNSIGNED_BYTE&&(et=Nt===Le?i.SRGB8_ALPHA8:i.RGBA8),O===i.UNSIGNED_SHORT_4_4_4_4&&(et=i.RGBA4),O===i.UNSIGNED_SHORT_5_5_5_1&&(et=i.RGB5_A1)}return(et===i.R16F||et===i.R32F||et===i.RG16F||et===i.RG32F||et===i.RGBA16F||et===i.RGBA32F)&&t.get("EXT_color_buffer_float"),et}function v(C,S){let O;return C?S===null||S===or||S===ao?O=i.DEPTH24_STENCIL8:S===os?O=i.DEPTH32F_STENCIL8:S===Zo&&(O=i.DEPTH24_STENCIL8,console.warn("DepthTexture: 16 bit depth attachment is not supported with stencil. Using 24-bit attachment.")):S===null||S===or||S===ao?O=i.DEPTH_COMPONENT24:S===os?O=i.DEPTH_COMPONENT32F:S===Zo&&(O=i.DEPTH_COMPONENT16),O}function N(C,S){return m(C)===!0||C.isFramebufferTexture&&C.minFilter!==wi&&C.minFilter!==Oi?Math.log2(Math.max(S.width,S.height))+1:C.mipmaps!==void 0&&C.mipmaps.length>0?C.mipmaps.length:C.isCompressedTexture&&Array.isArray(C.image)?S.mipmaps.length:1}function P(C){let S=C.target;S.removeEventListener("dispose",P),F(S),S.isVideoTexture&&u.delete(S)}function R(C){let S=C.target;S.removeEventListener("dispose",R),M(S)}function F(C){let S=n.get(C);if(S.__webglInit===void 0)return;let O=C.source,tt=h.get(O);if(tt){let j=tt[S.__cacheKey];j.usedTimes--,j.usedTimes===0&&E(C),Object.keys(tt).length===0&&h.delete(O)}n.remove(C)}function E(C){let S=n.get(C);i.deleteTexture(S.__webglTexture);let O=C.source,tt=h.get(O);delete tt[S.__cacheKey],o.memory.textures--}function M(C){let S=n.get(C);if(C.depthTexture&&(C.depthTexture.dispose(),n.remove(C.depthTexture)),C.isWebGLCubeRenderTarget)for(let tt=0;tt<6;tt++){if(Array.isArray(S.__webglFramebuffer[tt]))for(let j=0;j<S.__webglFramebuffer[tt].length;j++)i.deleteFramebuffer(S.__webglFramebuffer[tt][j]);else i.deleteFramebuffer(S.__webglFramebuffer[tt]);S.__webglDepthbuffer&&i.deleteRenderbuffer(S.__webglDepthbuffer[tt])}else{if(Array.isArray(S.__webglFramebuffer))for(let tt=0;tt<S.__webglFramebuffer.length;tt++)i.deleteFramebuffer(S.__webglFramebuffer[tt]);else i.deleteFramebuffer(S.__webglFramebuffer);if(S.__webglDepthbuffer&&i.deleteRenderbuffer(S.__webglDepthbuffer),S.__webglMultisampledFramebuffer&&i.deleteFramebuffer(S.__webglMultisampledFramebuffer),S.__webglColorRenderbuffer)for(let tt=0;tt<S.__webglColorRenderbuffer.length;tt++)S.__webglColorRenderbuffer[tt]&&i.deleteRenderbuffer(S.__webglColorRenderbuffer[tt]);S.__webglDepthRenderbuffer&&i.deleteRenderbuffer(S.__webglDepthRenderbuffer)}let O=C.textures;for(let tt=0,j=O.length;tt<j;tt++){let et=n.get(O[tt]);et.__webglTexture&&(i.deleteTexture(et.__webglTexture),o.memory.textures--),n.remove(O[tt])}n.remove(C)}let A=0;function W(){A=0}function G(){let C=A;return C>=s.maxTextures&&console.warn("THREE.WebGLTextures: Trying to use "+C+" texture units while this GPU supports only "+s.maxTextures),A+=1,C}function X(C){let S=[];return S.push(C.wrapS),S.push(C.wrapT),S.push(C.wrapR||0),S.push(C.magFilter),S.push(C.minFilter),S.push(C.anisotropy),S.push(C.internalFormat),S.push(C.format),S.push(C.type),S.push(C.generateMipmaps),S.push(C.premultiplyAlpha),S.push(C.flipY),S.push(C.unpackAlignment),S.push(C.colorSpace),S.join()}function Z(C,S){let O=n.get(C);if(C.isVideoTexture&&xt(C),C.isRenderTargetTexture===!1&&C.version>0&&O.__version!==C.version){let tt=C.image;if(tt===null)console.warn("THREE.WebGLRenderer: Texture marked for update but no image data found.");else if(tt.complete===!1)console.warn("THREE.WebGLRenderer: Texture marked for update but image is incomplete");else{J(O,C,S);return}}e.bindTexture(i.TEXTURE_2D,O.__webglTexture,i.TEXTURE0+S)}function Y(C,S){let O=n.get(C);if(C.version>0&&O.__version!==C.version){J(O,C,S);return}e.bindTexture(i.TEXTURE_2D_ARRAY,O.__webglTexture,i.TEXTURE0+S)}function nt(C,S){let O=n.get(C);if(C.version>0&&O.__version!==C.version){J(O,C,S);return}e.bindTexture(i.TEXTURE_3D,O.__webglTexture,i.TEXTURE0+S)}function Q(C,S){let O=n.get(C);if(C.version>0&&O.__version!==C.version){ht(O,C,S);return}e.bindTexture(i.TEXTURE_CUBE_MAP,O.__webglTexture,i.TEXTURE0+S)}let ft={[mu]:i.REPEAT,[sr]:i.CLAMP_TO_EDGE,[gu]:i.MIRRORED_REPEAT},at={[wi]:i.NEAREST,[$y]:i.NEAREST_MIPMAP_NEAREST,[Ba]:i.NEAREST_MIPMAP_LINEAR,[Oi]:i.LINEAR,[wh]:i.LINEAR_MIPMAP_NEAREST,[rr]:i.LINEAR_MIPMAP_LINEAR},_t={[jy]:i.NEVER,[sv]:i.ALWAYS,[Qy]:i.LESS,[Vg]:i.LEQUAL,[tv]:i.EQUAL,[iv]:i.GEQUAL,[ev]:i.GREATER,[nv]:i.NOTEQUAL};function pt(C,S){if(S.type===os&&t.has("OES_texture_float_linear")===!1&&(S.magFilter===Oi||S.magFilter===wh||S.magFilter===Ba||S.magFilter===rr||S.minFilter===Oi||S.minFilter===wh||S.minFilter===Ba||S.minFilter===rr)&&console.warn("THREE.WebGLRenderer: Unable to use linear filtering with floating point textures. OES_texture_float_linear not supported on this device."),i.texParameteri(C,i.TEXTURE_WRAP_S,ft[S.wrapS]),i.texParameteri(C,i.TEXTURE_WRAP_T,ft[S.wrapT]),(C===i.TEXTURE_3D||C===i.TEXTURE_2D_ARRAY)&&i.texParameteri(C,i.TEXTURE_WRAP_R,ft[S.wrapR]),i.texParameteri(C,i.TEXTURE_MAG_FILTER,at[S.magFilter]),i.texParameteri(C,i.TEXTURE_MIN_FILTER,at[S.minFilter]),S.compareFunction&&(i.texParameteri(C,i.TEXTURE_COMPARE_MODE,i.COMPARE_REF_TO_TEXTURE),i.texParameteri(C,i.TEXTURE_COMPARE_FUNC,_t[S.compareFunction])),t.has("EXT_texture_filter_anisotropic")===!0){if(S.magFilter===wi||S.minFilter!==Ba&&S.minFilter!==rr||S.type===os&&t.has("OES_texture_float_linear")===!1)return;if(S.anisotropy>1||n.get(S).__currentAnisotropy){let O=t.get("EXT_texture_filter_anisotropic");i.texParameterf(C,O.TEXTURE_MAX_ANISOTROPY_EXT,Math.min(S.anisotropy,s.getMaxAnisotropy())),n.get(S).__currentAnisotropy=S.anisotropy}}}function Zt(C,S){let O=!1;C.__webglInit===void 0&&(C.__webglInit=!0,S.addEventListener("dispose",P));let tt=S.source,j=h.get(tt);j===void 0&&(j={},h.set(tt,j));let et=X(S);if(et!==C.__cacheKey){j[et]===void 0&&(j[et]={texture:i.createTexture(),usedTimes:0},o.memory.textures++,O=!0),j[et].usedTimes++;let Nt=j[C.__cacheKey];Nt!==void 0&&(j[C.__cacheKey].usedTimes--,Nt.usedTimes===0&&E(S)),C.__cacheKey=et,C.__webglTexture=j[et].texture}return O}function J(C,S,O){let tt=i.TEXTURE_2D;(S.isDataArrayTexture||S.isCompressedArrayTexture)&&(tt=i.TEXTURE_2D_ARRAY),S.isData3DTexture&&(tt=i.TEXTURE_3D);let j=Zt(C,S),et=S.source;e.bindTexture(tt,C.__webglTexture,i.TEXTURE0+O);let Nt=n.get(et);if(et.version!==Nt.__version||j===!0){e.activeTexture(i.TEXTURE0+O);let Mt=ve.getPrimaries(ve.workingColorSpace),At=S.colorSpace===Rs?null:ve.getPrimaries(S.colorSpace),Kt=S.colorSpace===Rs||Mt===At?i.NONE:i.BROWSER_DEFAULT_WEBGL;i.pixelStorei(i.UNPACK_FLIP_Y_WEBGL,S.flipY),i.pixelStorei(i.UNPACK_PREMULTIPLY_ALPHA_WEBGL,S.premultiplyAlpha),i.pixelStorei(i.UNPACK_ALIGNMENT,S.unpackAlignment),i.pixelStorei(i.UNPACK_COLORSPACE_CONVERSION_WEBGL,Kt);let ct=_(S.image,!1,s.maxTextureSize);ct=Jt(S,ct);let wt=r.convert(S.format,S.colorSpace),Xt=r.convert(S.type),$t=y(S.internalFormat,wt,Xt,S.colorSpace,S.isVideoTexture);pt(tt,S);let Rt,ae=S.mipmaps,te=S.isVideoTexture!==!0,Se=Nt.__version===void 0||j===!0,B=et.dataReady,Et=N(S,ct);if(S.isDepthTexture)$t=v(S.format===lo,S.type),Se&&(te?e.texStorage2D(i.TEXTURE_2D,1,$t,ct.width,ct.height):e.texImage2D(i.TEXTURE_2D,0,$t,ct.width,ct.height,0,wt,Xt,null));else if(S.isDataTexture)if(ae.length>0){te&&Se&&e.texStorage2D(i.TEXTURE_2D,Et,$t,ae[0].width,ae[0].height);for(let it=0,ot=ae.length;it<ot;it++)Rt=ae[it],te?B&&e.texSubImage2D(i.TEXTURE_2D,it,0,0,Rt.width,Rt.height,wt,Xt,Rt.data):e.texImage2D(i.TEXTURE_2D,it,$t,Rt.width,Rt.height,0,wt,Xt,Rt.data);S.generateMipmaps=!1}else te?(Se&&e.texStorage2D(i.TEXTURE_2D,Et,$t,ct.width,ct.height),B&&e.texSubImage2D(i.TEXTURE_2D,0,0,0,ct.width,ct.height,wt,Xt,ct.data)):e.texImage2D(i.TEXTURE_2D,0,$t,ct.width,ct.height,0,wt,Xt,ct.data);else if(S.isCompressedTexture)if(S.isCompressedArrayTexture){te&&Se&&e.texStorage3D(i.TEXTURE_2D_ARRAY,Et,$t,ae[0].width,ae[0].height,ct.depth);for(let it=0,ot=ae.length;it<ot;it++)if(Rt=ae[it],S.format!==bi)if(wt!==null)if(te){if(B)if(S.layerUpdates.size>0){let It=fg(Rt.width,Rt.height,S.format,S.type);for(let Pt of S.layerUpdates){let se=Rt.data.subarray(Pt*It/Rt.data.BYTES_PER_ELEMENT,(Pt+1)*It/Rt.data.BYTES_PER_ELEMENT);e.compressedTexSubImage3D(i.TEXTURE_2D_ARRAY,it,0,0,Pt,Rt.width,Rt.height,1,wt,se)}S.clearLayerUpdates()}else e.compressedTexSubImage3D(i.TEXTURE_2D_ARRAY,it,0,0,0,Rt.width,Rt.height,ct.depth,wt,Rt.data)}else e.compressedTexImage3D(i.TEXTURE_2D_ARRAY,it,$t,Rt.width,Rt.height,ct.depth,0,Rt.data,0,0);else console.warn("THREE.WebGLRenderer: Attempt to load unsupported compressed texture format in .uploadTexture()");else te?B&&e.texSubImage3D(i.TEXTURE_2D_ARRAY,it,0,0,0,Rt.width,Rt.height,ct.depth,wt,Xt,Rt.data):e.texImage3D(i.TEXTURE_2D_ARRAY,it,$t,Rt.width,Rt.height,ct.depth,0,wt,Xt,Rt.data)}else{te&&Se&&e.texStorage2D(i.TEXTURE_2D,Et,$t,ae[0].width,ae[0].height);for(let it=0,ot=ae.length;it<ot;it++)Rt=ae[it],S.format!==bi?wt!==null?te?B&&e.compressedTexSubImage2D(i.TEXTURE_2D,it,0,0,Rt.width,Rt.height,wt,Rt.data):e.compressedTexImage2D(i.TEXTURE_2D,it,$t,Rt.width,Rt.height,0,Rt.data):console.warn("THREE.WebGLRenderer: Attempt to load unsupported compressed texture format in .uploadTexture()"):te?B&&e.texSubImage2D(i.TEXTURE_2D,it,0,0,Rt.width,Rt.height,wt,Xt,Rt.data):e.texImage2D(i.TEXTURE_2D,it,$t,Rt.width,Rt.height,0,wt,Xt,Rt.data)}else if(S.isDataArrayTexture)if(te){if(Se&&e.texStorage3D(i.TEXTURE_2D_ARRAY,Et,$t,ct.width,ct.height,ct.depth),B)if(S.layerUpdates.size>0){let it=fg(ct.width,ct.height,S.format,S.type);for(let ot of S.layerUpdates){let It=ct.data.subarray(ot*it/ct.data.BYTES_PER_ELEMENT,(ot+1)*it/ct.data.BYTES_PER_ELEMENT);e.texSubImage3D(i.TEXTURE_2D_ARRAY,0,0,0,ot,ct.width,ct.height,1,wt,Xt,It)}S.clearLayerUpdates()}else e.texSubImage3D(i.TEXTURE_2D_ARRAY,0,0,0,0,ct.width,ct.height,ct.depth,wt,Xt,ct.data)}else e.texImage3D(i.TEXTURE_2D_ARRAY,0,$t,ct.width,ct.height,ct.depth,0,wt,Xt,ct.data);else if(S.isData3DTexture)te?(Se&&e.texStorage3D(i.TEXTURE_3D,Et,$t,ct.width,ct.height,ct.depth),B&&e.texSubImage3D(i.TEXTURE_3D,0,0,0,0,ct.width,ct.height,ct.depth,wt,Xt,ct.data)):e.texImage3D(i.TEXTURE_3D,0,$t,ct.width,ct.height,ct.depth,0,wt,Xt,ct.data);else if(S.isFramebufferTexture){if(Se)if(te)e.texStorage2D(i.TEXTURE_2D,Et,$t,ct.width,ct.height);else{let it=ct.width,ot=ct.height;for(let It=0;It<Et;It++)e.texImage2D(i.TEXTURE_2D,It,$t,it,ot,0,wt,Xt,null),it>>=1,ot>>=1}}else if(ae.length>0){if(te&&Se){let it=bt(ae[0]);e.texStorage2D(i.TEXTURE_2D,Et,$t,it.width,it.height)}for(let it=0,ot=ae.length;it<ot;it++)Rt=ae[it],te?B&&e.texSubImage2D(i.TEXTURE_2D,it,0,0,wt,Xt,Rt):e.texImage2D(i.TEXTURE_2D,it,$t,wt,Xt,Rt);S.generateMipmaps=!1}else if(te){if(Se){let it=bt(ct);e.texStorage2D(i.TEXTURE_2D,Et,$t,it.width,it.height)}B&&e.texSubImage2D(i.TEXTURE_2D,0,0,0,wt,Xt,ct)}else e.texImage2D(i.TEXTURE_2D,0,$t,wt,Xt,ct);m(S)&&p(tt),Nt.__version=et.version,S.onUpdate&&S.onUpdate(S)}C.__version=S.version}function ht(C,S,O){if(S.image.length!==6)return;let tt=Zt(C,S),j=S.source;e.bindTexture(i.TEXTURE_CUBE_MAP,C.__webglTexture,i.TEXTURE0+O);let et=n.get(j);if(j.version!==et.__version||tt===!0){e.activeTexture(i.TEXTURE0+O);let Nt=ve.getPrimaries(ve.workingColorSpace),Mt=S.colorSpace===Rs?null:ve.getPrimaries(S.colorSpace),At=S.colorSpace===Rs||Nt===Mt?i.NONE:i.BROWSER_DEFAULT_WEBGL;i.pixelStorei(i.UNPACK_FLIP_Y_WEBGL,S.flipY),i.pixelStorei(i.UNPACK_PREMULTIPLY_ALPHA_WEBGL,S.premultiplyAlpha),i.pixelStorei(i.UNPACK_ALIGNMENT,S.unpackAlignment),i.pixelStorei(i.UNPACK_COLORSPACE_CONVERSION_WEBGL,At);let Kt=S.isCompressedTexture||S.image[0].isCompressedTexture,ct=S.image[0]&&S.image[0].isDataTexture,wt=[];for(let ot=0;ot<6;ot++)!Kt&&!ct?wt[ot]=_(S.image[ot],!0,s.maxCubemapSize):wt[ot]=ct?S.image[ot].image:S.image[ot],wt[ot]=Jt(S,wt[ot]);let Xt=wt[0],$t=r.convert(S.format,S.colorSpace),Rt=r.convert(S.type),ae=y(S.internalFormat,$t,Rt,S.colorSpace),te=S.isVideoTexture!==!0,Se=et.__version===void 0||tt===!0,B=j.dataReady,Et=N(S,Xt);pt(i.TEXTURE_CUBE_MAP,S);let it;if(Kt){te&&Se&&e.texStorage2D(i.TEXTURE_CUBE_MAP,Et,ae,Xt.width,Xt.height);for(let ot=0;ot<6;ot++){it=wt[ot].mipmaps;for(let It=0;It<it.length;It++){let Pt=it[It];S.format!==bi?$t!==null?te?B&&e.compressedTexSubImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+ot,It,0,0,Pt.width,Pt.height,$t,Pt.data):e.compressedTexImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+ot,It,ae,Pt.width,Pt.height,0,Pt.data):console.warn("THREE.WebGLRenderer: Attempt to load unsupported compressed texture format in .setTextureCube()"):te?B&&e.texSubImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+ot,It,0,0,Pt.width,Pt.height,$t,Rt,Pt.data):e.texImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+ot,It,ae,Pt.width,Pt.height,0,$t,Rt,Pt.data)}}}else{if(it=S.mipmaps,te&&Se){it.length>0&&Et++;let ot=bt(wt[0]);e.texStorage2D(i.TEXTURE_CUBE_MAP,Et,ae,ot.width,ot.height)}for(let ot=0;ot<6;ot++)if(ct){te?B&&e.texSubImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+ot,0,0,0,wt[ot].width,wt[ot].height,$t,Rt,wt[ot].data):e.texImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+ot,0,ae,wt[ot].width,wt[ot].height,0,$t,Rt,wt[ot].data);for(let It=0;It<it.length;It++){let se=it[It].image[ot].image;te?B&&e.texSubImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+ot,It+1,0,0,se.width,se.height,$t,Rt,se.data):e.texImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+ot,It+1,ae,se.width,se.height,0,$t,Rt,se.data)}}else{te?B&&e.texSubImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+ot,0,0,0,$t,Rt,wt[ot]):e.texImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+ot,0,ae,$t,Rt,wt[ot]);for(let It=0;It<it.length;It++){let Pt=it[It];te?B&&e.texSubImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+ot,It+1,0,0,$t,Rt,Pt.image[ot]):e.texImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+ot,It+1,ae,$t,Rt,Pt.image[ot])}}}m(S)&&p(i.TEXTURE_CUBE_MAP),et.__version=j.version,S.onUpdate&&S.onUpdate(S)}C.__version=S.version}function Ot(C,S,O,tt,j,et){let Nt=r.convert(O.format,O.colorSpace),Mt=r.convert(O.type),At=y(O.internalFormat,Nt,Mt,O.colorSpace),Kt=n.get(S),ct=n.get(O);if(ct.__renderTarget=S,!Kt.__hasExternalTextures){let wt=Math.max(1,S.width>>et),Xt=Math.max(1,S.height>>et);j===i.TEXTURE_3D||j===i.TEXTURE_2D_ARRAY?e.texImage3D(j,et,At,wt,Xt,S.depth,0,Nt,Mt,null):e.texImage2D(j,et,At,wt,Xt,0,Nt,Mt,null)}e.bindFramebuffer(i.FRAMEBUFFER,C),Tt(S)?a.framebufferTexture2DMultisampleEXT(i.FRAMEBUFFER,tt,j,ct.__webglTexture,0,ut(S)):(j===i.TEXTURE_2D||j>=i.TEXTURE_CUBE_MAP_POSITIVE_X&&j<=i.TEXTURE_CUBE_MAP_NEGATIVE_Z)&&i.framebufferTexture2D(i.FRAMEBUFFER,tt,j,ct.__webglTexture,et),e.bindFramebuffer(i.FRAMEBUFFER,null)}function lt(C,S,O){if(i.bindRenderbuffer(i.RENDERBUFFER,C),S.depthBuffer){let tt=S.depthTexture,j=tt&&tt.isDepthTexture?tt.type:null,et=v(S.stencilBuffer,j),Nt=S.stencilBuffer?i.DEPTH_STENCIL_ATTACHMENT:i.DEPTH_ATTACHMENT,Mt=ut(S);Tt(S)?a.renderbufferStorageMultisampleEXT(i.RENDERBUFFER,Mt,et,S.width,S.height):O?i.renderbufferStorageMultisample(i.RENDERBUFFER,Mt,et,S.width,S.height):i.renderbufferStorage(i.RENDERBUFFER,et,S.width,S.height),i.framebufferRenderbuffer(i.FRAMEBUFFER,Nt,i.RENDERBUFFER,C)}else{let tt=S.textures;for(let j=0;j<tt.length;j++){let et=tt[j],Nt=r.convert(et.format,et.colorSpace),Mt=r.convert(et.type),At=y(et.internalFormat,Nt,Mt,et.colorSpace),Kt=ut(S);O&&Tt(S)===!1?i.renderbufferStorageMultisample(i.RENDERBUFFER,Kt,At,S.width,S.height):Tt(S)?a.renderbufferStorageMultisampleEXT(i.RENDERBUFFER,Kt,At,S.width,S.height):i.renderbufferStorage(i.RENDERBUFFER,At,S.width,S.height)}}i.bindRenderbuffer(i.RENDERBUFFER,null)}function Ft(C,S){if(S&&S.isWebGLCubeRenderTarget)throw new Error("Depth Texture with cube render targets is not supported");if(e.bindFramebuffer(i.FRAMEBUFFER,C),!(S.depthTexture&&S.depthTexture.isDepthTexture))throw new Error("renderTarget.depthTexture must be an instance of THREE.DepthTexture");let tt=n.get(S.depthTexture);tt.__renderTarget=S,(!tt.__webglTexture||S.depthTexture.image.width!==S.width||S.depthTexture.image.height!==S.height)&&(S.depthTexture.image.width=S.width,S.depthTexture.image.height=S.height,S.depthTexture.needsUpdate=!0),Z(S.depthTexture,0);let j=tt.__webglTexture,et=ut(S);if(S.depthTexture.format===to)Tt(S)?a.framebufferTexture2DMultisampleEXT(i.FRAMEBUFFER,i.DEPTH_ATTACHMENT,i.TEXTURE_2D,j,0,et):i.framebufferTexture2D(i.FRAMEBUFFER,i.DEPTH_ATTACHMENT,i.TEXTURE_2D,j,0);else if(S.depthTexture.format===lo)Tt(S)?a.framebufferTexture2DMultisampleEXT(i.FRAMEBUFFER,i.DEPTH_STENCIL_ATTACHMENT,i.TEXTURE_2D,j,0,et):i.framebufferTexture2D(i.FRAMEBUFFER,i.DEPTH_STENCIL_ATTACHMENT,i.TEXTURE_2D,j,0);else throw new Error("Unknown depthTexture format")}function Yt(C){let S=n.get(C),O=C.isWebGLCubeRenderTarget===!0;if(S.__boundDepthTexture!==C.depthTexture){let tt=C.depthTexture;if(S.__depthDisposeCallback&&S.__depthDisposeCallback(),tt){let j=()=>{delete S.__boundDepthTexture,delete S.__depthDisposeCallback,tt.removeEventListener("dispose",j)};tt.addEventListener("dispose",j),S.__depthDisposeCallback=j}S.__boundDepthTexture=tt}if(C.depthTexture&&!S.__autoAllocateDepthBuffer){if(O)throw new Error("target.depthTexture not supported in Cube render targets");Ft(S.__webglFramebuffer,C)}else if(O){S.__webglDepthbuffer=[];for(let tt=0;tt<6;tt++)if(e.bindFramebuffer(i.FRAMEBUFFER,S.__webglFramebuffer[tt]),S.__webglDepthbuffer[tt]===void 0)S.__webglDepthbuffer[tt]=i.createRenderbuffer(),lt(S.__webglDepthbuffer[tt],C,!1);else{let j=C.stencilBuffer?i.DEPTH_STENCIL_ATTACHMENT:i.DEPTH_ATTACHMENT,et=S.__webglDepthbuffer[tt];i.bindRenderbuffer(i.RENDERBUFFER,et),i.framebufferRenderbuffer(i.FRAMEBUFFER,j,i.RENDERBUFFER,et)}}else if(e.bindFramebuffer(i.FRAMEBUFFER,S.__webglFramebuffer),S.__webglDepthbuffer===void 0)S.__webglDepthbuffer=i.createRenderbuffer(),lt(S.__webglDepthbuffer,C,!1);else{let tt=C.stencilBuffer?i.DEPTH_STENCIL_ATTACHMENT:i.DEPTH_ATTACHMENT,j=S.__webglDepthbuffer;i.bindRenderbuffer(i.RENDERBUFFER,j),i.framebufferRenderbuffer(i.FRAMEBUFFER,tt,i.RENDERBUFFER,j)}e.bindFramebuffer(i.FRAMEBUFFER,null)}function Ut(C,S,O){let tt=n.get(C);S!==void 0&&Ot(tt.__webglFramebuffer,C,C.texture,i.COLOR_ATTACHMENT0,i.TEXTURE_2D,0),O!==void 0&&Yt(C)}function Qt(C){let S=C.texture,O=n.get(C),tt=n.get(S);C.addEventListener("dispose",R);let j=C.textures,et=C.isWebGLCubeRenderTarget===!0,Nt=j.length>1;if(Nt||(tt.__webglTexture===void 0&&(tt.__webglTexture=i.createTexture()),tt.__version=S.version,o.memory.textures++),et){O.__webglFramebuffer=[];for(let Mt=0;Mt<6;Mt++)if(S.mipmaps&&S.mipmaps.length>0){O.__webglFramebuffer[Mt]=[];for(let At=0;At<S.mipmaps.length;At++)O.__webglFramebuffer[Mt][At]=i.createFramebuffer()}else O.__webglFramebuffer[Mt]=i.createFramebuffer()}else{if(S.mipmaps&&S.mipmaps.length>0){O.__webglFramebuffer=[];for(let Mt=0;Mt<S.mipmaps.length;Mt++)O.__webglFramebuffer[Mt]=i.createFramebuffer()}else O.__webglFramebuffer=i.createFramebuffer();if(Nt)for(let Mt=0,At=j.length;Mt<At;Mt++){let Kt=n.get(j[Mt]);Kt.__webglTexture===void 0&&(Kt.__webglTexture=i.createTexture(),o.memory.textures++)}if(C.samples>0&&Tt(C)===!1){O.__webglMultisampledFramebuffer=i.createFramebuffer(),O.__webglColorRenderbuffer=[],e.bindFramebuffer(i.FRAMEBUFFER,O.__webglMultisampledFramebuffer);for(let Mt=0;Mt<j.length;Mt++){let At=j[Mt];O.__webglColorRenderbuffer[Mt]=i.createRenderbuffer(),i.bindRenderbuffer(i.RENDERBUFFER,O.__webglColorRenderbuffer[Mt]);let Kt=r.convert(At.format,At.colorSpace),ct=r.convert(At.type),wt=y(At.internalFormat,Kt,ct,At.colorSpace,C.isXRRenderTarget===!0),Xt=ut(C);i.renderbufferStorageMultisample(i.RENDERBUFFER,Xt,wt,C.width,C.height),i.framebufferRenderbuffer(i.FRAMEBUFFER,i.COLOR_ATTACHMENT0+Mt,i.RENDERBUFFER,O.__webglColorRenderbuffer[Mt])}i.bindRenderbuffer(i.RENDERBUFFER,null),C.depthBuffer&&(O.__webglDepthRenderbuffer=i.createRenderbuffer(),lt(O.__webglDepthRenderbuffer,C,!0)),e.bindFramebuffer(i.FRAMEBUFFER,null)}}if(et){e.bindTexture(i.TEXTURE_CUBE_MAP,tt.__webglTexture),pt(i.TEXTURE_CUBE_MAP,S);for(let Mt=0;Mt<6;Mt++)if(S.mipmaps&&S.mipmaps.length>0)for(let At=0;At<S.mipmaps.length;At++)Ot(O.__webglFramebuffer[Mt][At],C,S,i.COLOR_ATTACHMENT0,i.TEXTURE_CUBE_MAP_POSITIVE_X+Mt,At);else Ot(O.__webglFramebuffer[Mt],C,S,i.COLOR_ATTACHMENT0,i.TEXTURE_CUBE_MAP_POSITIVE_X+Mt,0);m(S)&&p(i.TEXTURE_CUBE_MAP),e.unbindTexture()}else if(Nt){for(let Mt=0,At=j.length;Mt<At;Mt++){let Kt=j[Mt],ct=n.get(Kt);e.bindTexture(i.TEXTURE_2D,ct.__webglTexture),pt(i.TEXTURE_2D,Kt),Ot(O.__webglFramebuffer,C,Kt,i.COLOR_ATTACHMENT0+Mt,i.TEXTURE_2D,0),m(Kt)&&p(i.TEXTURE_2D)}e.unbindTexture()}else{let Mt=i.TEXTURE_2D;if((C.isWebGL3DRenderTarget||C.isWebGLArrayRenderTarget)&&(Mt=C.isWebGL3DRenderTarget?i.TEXTURE_3D:i.TEXTURE_2D_ARRAY),e.bindTexture(Mt,tt.__webglTexture),pt(Mt,S),S.mipmaps&&S.mipmaps.length>0)for(let At=0;At<S.mipmaps.length;At++)Ot(O.__webglFramebuffer[At],C,S,i.COLOR_ATTACHMENT0,Mt,At);else Ot(O.__webglFramebuffer,C,S,i.COLOR_ATTACHMENT0,Mt,0);m(S)&&p(Mt),e.unbindTexture()}C.depthBuffer&&Yt(C)}function st(C){let S=C.textures;for(let O=0,tt=S.length;O<tt;O++){let j=S[O];if(m(j)){let et=b(C),Nt=n.get(j).__webglTexture;e.bindTexture(et,Nt),p(et),e.unbindTexture()}}}let mt=[],U=[];function Vt(C){if(C.samples>0){if(Tt(C)===!1){let S=C.textures,O=C.width,tt=C.height,j=i.COLOR_BUFFER_BIT,et=C.stencilBuffer?i.DEPTH_STENCIL_ATTACHMENT:i.DEPTH_ATTACHMENT,Nt=n.get(C),Mt=S.length>1;if(Mt)for(let At=0;At<S.length;At++)e.bindFramebuffer(i.FRAMEBUFFER,Nt.__webglMultisampledFramebuffer),i.framebufferRenderbuffer(i.FRAMEBUFFER,i.COLOR_ATTACHMENT0+At,i.RENDERBUFFER,null),e.bindFramebuffer(i.FRAMEBUFFER,Nt.__webglFramebuffer),i.framebufferTexture2D(i.DRAW_FRAMEBUFFER,i.COLOR_ATTACHMENT0+At,i.TEXTURE_2D,null,0);e.bindFramebuffer(i.READ_FRAMEBUFFER,Nt.__webglMultisampledFramebuffer),e.bindFramebuffer(i.DRAW_FRAMEBUFFER,Nt.__webglFramebuffer);for(let At=0;At<S.length;At++){if(C.resolveDepthBuffer&&(C.depthBuffer&&(j|=i.DEPTH_BUFFER_BIT),C.stencilBuffer&&C.resolveStencilBuffer&&(j|=i.STENCIL_BUFFER_BIT)),Mt){i.framebufferRenderbuffer(i.READ_FRAMEBUFFER,i.COLOR_ATTACHMENT0,i.RENDERBUFFER,Nt.__webglColorRenderbuffer[At]);let Kt=n.get(S[At]).__webglTexture;i.framebufferTexture2D(i.DRAW_FRAMEBUFFER,i.COLOR_ATTACHMENT0,i.TEXTURE_2D,Kt,0)}i.blitFramebuffer(0,0,O,tt,0,0,O,tt,j,i.NEAREST),l===!0&&(mt.length=0,U.length=0,mt.push(i.COLOR_ATTACHMENT0+At),C.depthBuffer&&C.resolveDepthBuffer===!1&&(mt.push(et),U.push(et),i.invalidateFramebuffer(i.DRAW_FRAMEBUFFER,U)),i.invalidateFramebuffer(i.READ_FRAMEBUFFER,mt))}if(e.bindFramebuffer(i.READ_FRAMEBUFFER,null),e.bindFramebuffer(i.DRAW_FRAMEBUFFER,null),Mt)for(let At=0;At<S.length;At++){e.bindFramebuffer(i.FRAMEBUFFER,Nt.__webglMultisampledFramebuffer),i.framebufferRenderbuffer(i.FRAMEBUFFER,i.COLOR_ATTACHMENT0+At,i.RENDERBUFFER,Nt.__webglColorRenderbuffer[At]);let Kt=n.get(S[At]).__webglTexture;e.bindFramebuffer(i.FRAMEBUFFER,Nt.__webglFramebuffer),i.framebufferTexture2D(i.DRAW_FRAMEBUFFER,i.COLOR_ATTACHMENT0+At,i.TEXTURE_2D,Kt,0)}e.bindFramebuffer(i.DRAW_FRAMEBUFFER,Nt.__webglMultisampledFramebuffer)}else if(C.depthBuffer&&C.resolveDepthBuffer===!1&&l){let S=C.stencilBuffer?i.DEPTH_STENCIL_ATTACHMENT:i.DEPTH_ATTACHMENT;i.invalidateFramebuffer(i.DRAW_FRAMEBUFFER,[S])}}}function ut(C){return Math.min(s.maxSamples,C.samples)}function Tt(C){let S=n.get(C);return C.samples>0&&t.has("WEBGL_multisampled_render_to_texture")===!0&&S.__useRenderToTexture!==!1}function xt(C){let S=o.render.frame;u.get(C)!==S&&(u.set(C,S),C.update())}function Jt(C,S){let O=C.colorSpace,tt=C.format,j=C.type;return C.isCompressedTexture===!0||C.isVideoTexture===!0||O!==_o&&O!==Rs&&(ve.getTransfer(O)===Le?(tt!==bi||j!==cs)&&console.warn("THREE.WebGLTextures: sRGB encoded textures have to use RGBAFormat and UnsignedByteType."):console.error("THREE.WebGLTextures: Unsupported texture color space:",O)),S}function bt(C){return typeof HTMLImageElement<"u"&&C instanceof HTMLImageElement?(c.width=C.naturalWidth||C.width,c.height=C.naturalHeight||C.height):typeof VideoFrame<"u"&&C instanceof VideoFrame?(c.width=C.displayWidth,c.height=C.displayHeight):(c.width=C.width,c.height=C.height),c}this.allocateTextureUnit=G,this.resetTextureUnits=W,this.setTexture2D=Z,this.setTexture2DArray=Y,this.setTexture3D=nt,this.setTextureCube=Q,this.rebindTextures=Ut,this.setupRenderTarget=Qt,this.updateRenderTargetMipmap=st,this.updateMultisampleRenderTarget=Vt,this.setupDepthRenderbuffer=Yt,this.setupFrameBufferTexture=Ot,this.useMultisampledRTT=Tt}function h1(i,t){function e(n,s=Rs){let r,o=ve.getTransfer(s);if(n===cs)return i.UNSIGNED_BYTE;if(n===Dd)return i.UNSIGNED_SHORT_4_4_4_4;if(n===Ud)return i.UNSIGNED_SHORT_5_5_5_1;if(n===Pg)return i.UNSIGNED_INT_5_9_9_9_REV;if(n===Cg)return i.BYTE;if(n===Rg)return i.SHORT;if(n===Zo)return i.UNSIGNED_SHORT;if(n===Ld)return i.INT;if(n===or)return i.UNSIGNED_INT;if(n===os)return i.FLOAT;if(n===sa)return i.HALF_FLOAT;if(n===Ig)return i.ALPHA;if(n===Lg)return i.RGB;if(n===bi)return i.RGBA;if(n===Dg)return i.LUMINANCE;if(n===Ug)return i.LUMINANCE_ALPHA;if(n===to)return i.DEPTH_COMPONENT;if(n===lo)return i.DEPTH_STENCIL;if(n===Ng)return i.RED;if(n===Nd)return i.RED_INTEGER;if(n===Fg)return i.RG;if(n===Fd)return i.RG_INTEGER;if(n===Od)return i.RGBA_INTEGER;if(n===ml||n===gl||n===_l||n===xl)if(o===Le)if(r=t.get("WEBGL_compressed_texture_s3tc_srgb"),r!==null){if(n===ml)return r.COMPRESSED_SRGB_S3TC_DXT1_EXT;if(n===gl)return r.COMPRESSED_SRGB_ALPHA_S3TC_DXT1_EXT;if(n===_l)return r.COMPRESSED_SRGB_ALPHA_S3TC_DXT3_EXT;if(n===xl)return r.COMPRESSED_SRGB_ALPHA_S3TC_DXT5_EXT}else return null;else if(r=t.get("WEBGL_compressed_texture_s3tc"),r!==null){if(n===ml)return r.COMPRESSED_RGB_S3TC_DXT1_EXT;if(n===gl)return r.COMPRESSED_RGBA_S3TC_DXT1_EXT;if(n===_l)return r.COMPRESSED_RGBA_S3TC_DXT3_EXT;if(n===xl)return r.COMPRESSED_RGBA_S3TC_DXT5_EXT}else return null;if(n===_u||n===xu||n===yu||n===vu)if(r=t.get("WEBGL_compressed_texture_pvrtc"),r!==null){if(n===_u)return r.COMPRESSED_RGB_PVRTC_4BPPV1_IMG;if(n===xu)return r.COMPRESSED_RGB_PVRTC_2BPPV1_IMG;if(n===yu)return r.COMPRESSED_RGBA_PVRTC_4BPPV1_IMG;if(n===vu)return r.COMPRESSED_RGBA_PVRTC_2BPPV1_IMG}else return null;if(n===Mu||n===Su||n===bu)if(r=t.get("WEBGL_compressed_texture_etc"),r!==null){if(n===Mu||n===Su)return o===Le?r.COMPRESSED_SRGB8_ETC2:r.COMPRESSED_RGB8_ETC2;if(n===bu)return o===Le?r.COMPRESSED_SRGB8_ALPHA8_ETC2_EAC:r.COMPRESSED_RGBA8_ETC2_EAC}else return null;if(n===wu||n===Eu||n===Tu||n===Au||n===Cu||n===Ru||n===Pu||n===Iu||n===Lu||n===Du||n===Uu||n===Nu||n===Fu||n===Ou)if(r=t.get("WEBGL_compressed_texture_astc"),r!==null){if(n===wu)return o===Le?r.COMPRESSED_SRGB8_ALPHA8_ASTC_4x4_KHR:r.COMPRESSED_RGBA_ASTC_4x4_KHR;if(n===Eu)return o===Le?r.COMPRESSED_SRGB8_ALPHA8_ASTC_5x4_KHR:r.COMPRESSED_RGBA_ASTC_5x4_KHR;if(n===Tu)return o===Le?r.COMPRESSED_SRGB8_ALPHA8_ASTC_5x5_KHR:r.COMPRESSED_RGBA_ASTC_5x5_KHR;if(n===Au)return o===Le?r.COMPRESSED_SRGB8_ALPHA8_ASTC_6x5_KHR:r.COMPRESSED_RGBA_ASTC_6x5_KHR;if(n===Cu)return o===Le?r.COMPRESSED_SRGB8_ALPHA8_ASTC_6x6_KHR:r.COMPRESSED_RGBA_ASTC_6x6_KHR;if(n===Ru)return o===Le?r.COMPRESSED_SRGB8_ALPHA8_ASTC_8x5_KHR:r.COMPRESSED_RGBA_ASTC_8x5_KHR;if(n===Pu)return o===Le?r.COMPRESSED_SRGB8_ALPHA8_ASTC_8x6_KHR:r.COMPRESSED_RGBA_ASTC_8x6_KHR;if(n===Iu)return o===Le?r.COMPRESSED_SRGB8_ALPHA8_ASTC_8x8_KHR:r.COMPRESSED_RGBA_ASTC_8x8_KHR;if(n===Lu)return o===Le?r.COMPRESSED_SRGB8_ALPHA8_ASTC_10x5_KHR:r.COMPRESSED_RGBA_ASTC_10x5_KHR;if(n===Du)return o===Le?r.COMPRESSED_SRGB8_ALPHA8_ASTC_10x6_KHR:r.COMPRESSED_RGBA_ASTC_10x6_KHR;if(n===Uu)return o===Le?r.COMPRESSED_SRGB8_ALPHA8_ASTC_10x8_KHR:r.COMPRESSED_RGBA_ASTC_10x8_KHR;if(n===Nu)return o===Le?r.COMPRESSED_SRGB8_ALPHA8_ASTC_10x10_KHR:r.COMPRESSED_RGBA_ASTC_10x10_KHR;if(n===Fu)return o===Le?r.COMPRESSED_SRGB8_ALPHA8_ASTC_12x10_KHR:r.COMPRESSED_RGBA_ASTC_12x10_KHR;if(n===Ou)return o===Le?r.COMPRESSED_SRGB8_ALPHA8_ASTC_12x12_KHR:r.COMPRESSED_RGBA_ASTC_12x12_KHR}else return null;if(n===yl||n===Bu||n===zu)if(r=t.get("EXT_texture_compression_bptc"),r!==null){if(n===yl)return o===Le?r.COMPRESSED_SRGB_ALPHA_BPTC_UNORM_EXT:r.COMPRESSED_RGBA_BPTC_UNORM_EXT;if(n===Bu)return r.COMPRESSED_RGB_BPTC_SIGNED_FLOAT_EXT;if(n===zu)return r.COMPRESSED_RGB_BPTC_UNSIGNED_FLOAT_EXT}else return null;if(n===Og||n===ku||n===Vu||n===Hu)if(r=t.get("EXT_texture_compression_rgtc"),r!==null){if(n===yl)return r.COMPRESSED_RED_RGTC1_EXT;if(n===ku)return r.COMPRESSED_SIGNED_RED_RGTC1_EXT;if(n===Vu)return r.COMPRESSED_RED_GREEN_RGTC2_EXT;if(n===Hu)return r.COMPRESSED_SIGNED_RED_GREEN_RGTC2_EXT}else return null;return n===ao?i.UNSIGNED_INT_24_8:i[n]!==void 0?i[n]:null}return{convert:e}}var sd=class extends Un{constructor(t=[]){super(),this.isArrayCamera=!0,this.cameras=t}},Be=class extends Tn{constructor(){super(),this.isGroup=!0,this.type="Group"}},u1={type:"move"},qo=class{constructor(){this._targetRay=null,this._grip=null,this._hand=null}getHandSpace(){return this._hand===null&&(this._hand=new Be,this._hand.matrixAutoUpdate=!1,this._hand.visible=!1,this._hand.joints={},this._hand.inputState={pinching:!1}),this._hand}getTargetRaySpace(){return this._targetRay===null&&(this._targetRay=new Be,this._targetRay.matrixAutoUpdate=!1,this._targetRay.visible=!1,this._targetRay.hasLinearVelocity=!1,this._targetRay.linearVelocity=new D,this._targetRay.hasAngularVelocity=!1,this._targetRay.angularVelocity=new D),this._targetRay}getGripSpace(){return this._grip===null&&(this._grip=new Be,this._grip.matrixAutoUpdate=!1,this._grip.visible=!1,this._grip.hasLinearVelocity=!1,this._grip.linearVelocity=new D,this._grip.hasAngularVelocity=!1,this._grip.angularVelocity=new D),this._grip}dispatchEvent(t){return this._targetRay!==null&&this._targetRay.dispatchEvent(t),this._grip!==null&&this._grip.dispatchEvent(t),this._hand!==null&&this._hand.dispatchEvent(t),this}connect(t){if(t&&t.hand){let e=this._hand;if(e)for(let n of t.hand.values())this._getHandJoint(e,n)}return this.dispatchEvent({type:"connected",data:t}),this}disconnect(t){return this.dispatchEvent({type:"disconnected",data:t}),this._targetRay!==null&&(this._targetRay.visible=!1),this._grip!==null&&(this._grip.visible=!1),this._hand!==null&&(this._hand.visible=!1),this}update(t,e,n){let s=null,r=null,o=null,a=this._targetRay,l=this._grip,c=this._hand;if(t&&e.session.visibilityState!=="visible-blurred"){if(c&&t.hand){o=!0;for(let _ of t.hand.values()){let m=e.getJointPose(_,n),p=this._getHandJoint(c,_);m!==null&&(p.matrix.fromArray(m.transform.matrix),p.matrix.decompose(p.position,p.rotation,p.scale),p.matrixWorldNeedsUpdate=!0,p.jointRadius=m.radius),p.visible=m!==null}let u=c.joints["index-finger-tip"],d=c.joints["thumb-tip"],h=u.position.distanceTo(d.position),f=.02,g=.005;c.inputState.pinching&&h>f+g?(c.inputState.pinching=!1,this.dispatchEvent({type:"pinchend",handedness:t.handedness,target:this})):!c.inputState.pinching&&h<=f-g&&(c.inputState.pinching=!0,this.dispatchEvent({type:"pinchstart",handedness:t.handedness,target:this}))}else l!==null&&t.gripSpace&&(r=e.getPose(t.gripSpace,n),r!==null&&(l.matrix.fromArray(r.transform.matrix),l.matrix.decompose(l.position,l.rotation,l.scale),l.matrixWorldNeedsUpdate=!0,r.linearVelocity?(l.hasLinearVelocity=!0,l.linearVelocity.copy(r.linearVelocity)):l.hasLinearVelocity=!1,r.angularVelocity?(l.hasAngularVelocity=!0,l.angularVelocity.copy(r.angularVelocity)):l.hasAngularVelocity=!1));a!==null&&(s=e.getPose(t.targetRaySpace,n),s===null&&r!==null&&(s=r),s!==null&&(a.matrix.fromArray(s.transform.matrix),a.matrix.decompose(a.position,a.rotation,a.scale),a.matrixWorldNeedsUpdate=!0,s.linearVelocity?(a.hasLinearVelocity=!0,a.linearVelocity.copy(s.linearVelocity)):a.hasLinearVelocity=!1,s.angularVelocity?(a.hasAngularVelocity=!0,a.angularVelocity.copy(s.angularVelocity)):a.hasAngularVelocity=!1,this.dispatchEvent(u1)))}return a!==null&&(a.visible=s!==null),l!==null&&(l.visible=r!==null),c!==null&&(c.visible=o!==null),this}_getHandJoint(t,e){if(t.joints[e.jointName]===void 0){let n=new Be;n.matrixAutoUpdate=!1,n.visible=!1,t.joints[e.jointName]=n,t.add(n)}return t.joints[e.jointName]}},d1=`
+void main() {
+
+	gl_Position = vec4( position, 1.0 );
+
+}`,f1=`
+uniform sampler2DArray depthColor;
+uniform float depthWidth;
+uniform float depthHeight;
+
+void main() {
+
+	vec2 coord = vec2( gl_FragCoord.x / depthWidth, gl_FragCoord.y / depthHeight );
+
+	if ( coord.x >= 1.0 ) {
+
+		gl_FragDepth = texture( depthColor, vec3( coord.x - 1.0, coord.y, 1 ) ).r;
+
+	} else {
+
+		gl_FragDepth = texture( depthColor, vec3( coord.x, coord.y, 0 ) ).r;
+
+	}
+
+}`,rd=class{constructor(){this.texture=null,this.mesh=null,this.depthNear=0,this.depthFar=0}init(t,e,n){if(this.texture===null){let s=new li,r=t.properties.get(s);r.__webglTexture=e.texture,(e.depthNear!=n.depthNear||e.depthFar!=n.depthFar)&&(this.depthNear=e.depthNear,this.depthFar=e.depthFar),this.texture=s}}getMesh(t){if(this.texture!==null&&this.mesh===null){let e=t.cameras[0].viewport,n=new hi({vertexShader:d1,fragmentShader:f1,uniforms:{depthColor:{value:this.texture},depthWidth:{value:e.z},depthHeight:{value:e.w}}});this.mesh=new _e(new uo(20,20),n)}return this.mesh}reset(){this.texture=null,this.mesh=null}getDepthTexture(){return this.texture}},od=class extends hs{constructor(t,e){super();let n=this,s=null,r=1,o=null,a="local-floor",l=1,c=null,u=null,d=null,h=null,f=null,g=null,_=new rd,m=e.getContextAttributes(),p=null,b=null,y=[],v=[],N=new gt,P=null,R=new Un;R.viewport=new De;let F=new Un;F.viewport=new De;let E=[R,F],M=new sd,A=null,W=null;this.cameraAutoUpdate=!0,this.enabled=!1,this.isPresenting=!1,this.getController=function(J){let ht=y[J];return ht===void 0&&(ht=new qo,y[J]=ht),ht.getTargetRaySpace()},this.getControllerGrip=function(J){let ht=y[J];return ht===void 0&&(ht=new qo,y[J]=ht),ht.getGripSpace()},this.getHand=function(J){let ht=y[J];return ht===void 0&&(ht=new qo,y[J]=ht),ht.getHandSpace()};function G(J){let ht=v.indexOf(J.inputSource);if(ht===-1)return;let Ot=y[ht];Ot!==void 0&&(Ot.update(J.inputSource,J.frame,c||o),Ot.dispatchEvent({type:J.type,data:J.inputSource}))}function X(){s.removeEventListener("select",G),s.removeEventListener("selectstart",G),s.removeEventListener("selectend",G),s.removeEventListener("squeeze",G),s.removeEventListener("squeezestart",G),s.removeEventListener("squeezeend",G),s.removeEventListener("end",X),s.removeEventListener("inputsourceschange",Z);for(let J=0;J<y.length;J++){let ht=v[J];ht!==null&&(v[J]=null,y[J].disconnect(ht))}A=null,W=null,_.reset(),t.setRenderTarget(p),f=null,h=null,d=null,s=null,b=null,Zt.stop(),n.isPresenting=!1,t.setPixelRatio(P),t.setSize(N.width,N.height,!1),n.dispatchEvent({type:"sessionend"})}this.setFramebufferScaleFactor=function(J){r=J,n.isPresenting===!0&&console.warn("THREE.WebXRManager: Cannot change framebuffer scale while presenting.")},this.setReferenceSpaceType=function(J){a=J,n.isPresenting===!0&&console.warn("THREE.WebXRManager: Cannot change reference space type while presenting.")},this.getReferenceSpace=function(){return c||o},this.setReferenceSpace=function(J){c=J},this.getBaseLayer=function(){return h!==null?h:f},this.getBinding=function(){return d},this.getFrame=function(){return g},this.getSession=function(){return s},this.setSession=async function(J){if(s=J,s!==null){if(p=t.getRenderTarget(),s.addEventListener("select",G),s.addEventListener("selectstart",G),s.addEventListener("selectend",G),s.addEventListener("squeeze",G),s.addEventListener("squeezestart",G),s.addEventListener("squeezeend",G),s.addEventListener("end",X),s.addEventListener("inputsourceschange",Z),m.xrCompatible!==!0&&await e.makeXRCompatible(),P=t.getPixelRatio(),t.getSize(N),s.renderState.layers===void 0){let ht={antialias:m.antialias,alpha:!0,depth:m.depth,stencil:m.stencil,framebufferScaleFactor:r};f=new XRWebGLLayer(s,e,ht),s.updateRenderState({baseLayer:f}),t.setPixelRatio(1),t.setSize(f.framebufferWidth,f.framebufferHeight,!1),b=new us(f.framebufferWidth,f.framebufferHeight,{format:bi,type:cs,colorSpace:t.outputColorSpace,stencilBuffer:m.stencil})}else{let ht=null,Ot=null,lt=null;m.depth&&(lt=m.stencil?e.DEPTH24_STENCIL8:e.DEPTH_COMPONENT24,ht=m.stencil?lo:to,Ot=m.stencil?ao:or);let Ft={colorFormat:e.RGBA8,depthFormat:lt,scaleFactor:r};d=new XRWebGLBinding(s,e),h=d.createProjectionLayer(Ft),s.updateRenderState({layers:[h]}),t.setPixelRatio(1),t.setSize(h.textureWidth,h.textureHeight,!1),b=new us(h.textureWidth,h.textureHeight,{format:bi,type:cs,depthTexture:new Il(h.textureWidth,h.textureHeight,Ot,void 0,void 0,void 0,void 0,void 0,void 0,ht),stencilBuffer:m.stencil,colorSpace:t.outputColorSpace,samples:m.antialias?4:0,resolveDepthBuffer:h.ignoreDepthValues===!1})}b.isXRRenderTarget=!0,this.setFoveation(l),c=null,o=await s.requestReferenceSpace(a),Zt.setContext(s),Zt.start(),n.isPresenting=!0,n.dispatchEvent({type:"sessionstart"})}},this.getEnvironmentBlendMode=function(){if(s!==null)return s.environmentBlendMode},this.getDepthTexture=function(){return _.getDepthTexture()};function Z(J){for(let ht=0;ht<J.removed.length;ht++){let Ot=J.removed[ht],lt=v.indexOf(Ot);lt>=0&&(v[lt]=null,y[lt].disconnect(Ot))}for(let ht=0;ht<J.added.length;ht++){let Ot=J.added[ht],lt=v.indexOf(Ot);if(lt===-1){for(let Yt=0;Yt<y.length;Yt++)if(Yt>=v.length){v.push(Ot),lt=Yt;break}else if(v[Yt]===null){v[Yt]=Ot,lt=Yt;break}if(lt===-1)break}let Ft=y[lt];Ft&&Ft.connect(Ot)}}let Y=new D,nt=new D;function Q(J,ht,Ot){Y.setFromMatrixPosition(ht.matrixWorld),nt.setFromMatrixPosition(Ot.matrixWorld);let lt=Y.distanceTo(nt),Ft=ht.projectionMatrix.elements,Yt=Ot.projectionMatrix.elements,Ut=Ft[14]/(Ft[10]-1),Qt=Ft[14]/(Ft[10]+1),st=(Ft[9]+1)/Ft[5],mt=(Ft[9]-1)/Ft[5],U=(Ft[8]-1)/Ft[0],Vt=(Yt[8]+1)/Yt[0],ut=Ut*U,Tt=Ut*Vt,xt=lt/(-U+Vt),Jt=xt*-U;if(ht.matrixWorld.decompose(J.position,J.quaternion,J.scale),J.translateX(Jt),J.translateZ(xt),J.matrixWorld.compose(J.position,J.quaternion,J.scale),J.matrixWorldInverse.copy(J.matrixWorld).invert(),Ft[10]===-1)J.projectionMatrix.copy(ht.projectionMatrix),J.projectionMatrixInverse.copy(ht.projectionMatrixInverse);else{let bt=Ut+xt,C=Qt+xt,S=ut-Jt,O=Tt+(lt-Jt),tt=st*Qt/C*bt,j=mt*Qt/C*bt;J.projectionMatrix.makePerspective(S,O,tt,j,bt,C),J.projectionMatrixInverse.copy(J.projectionMatrix).invert()}}function ft(J,ht){ht===null?J.matrixWorld.copy(J.matrix):J.matrixWorld.multiplyMatrices(ht.matrixWorld,J.matrix),J.matrixWorldInverse.copy(J.matrixWorld).invert()}this.updateCamera=function(J){if(s===null)return;let ht=J.near,Ot=J.far;_.texture!==null&&(_.depthNear>0&&(ht=_.depthNear),_.depthFar>0&&(Ot=_.depthFar)),M.near=F.near=R.near=ht,M.far=F.far=R.far=Ot,(A!==M.near||W!==M.far)&&(s.updateRenderState({depthNear:M.near,depthFar:M.far}),A=M.near,W=M.far),R.layers.mask=J.layers.mask|2,F.layers.mask=J.layers.mask|4,M.layers.mask=R.layers.mask|F.layers.mask;let lt=J.parent,Ft=M.cameras;ft(M,lt);for(let Yt=0;Yt<Ft.length;Yt++)ft(Ft[Yt],lt);Ft.length===2?Q(M,R,F):M.projectionMatrix.copy(R.projectionMatrix),at(J,M,lt)};function at(J,ht,Ot){Ot===null?J.matrix.copy(ht.matrixWorld):(J.matrix.copy(Ot.matrixWorld),J.matrix.invert(),J.matrix.multiply(ht.matrixWorld)),J.matrix.decompose(J.position,J.quaternion,J.scale),J.updateMatrixWorld(!0),J.projectionMatrix.copy(ht.projectionMatrix),J.projectionMatrixInverse.copy(ht.projectionMatrixInverse),J.isPerspectiveCamera&&(J.fov=Jo*2*Math.atan(1/J.projectionMatrix.elements[5]),J.zoom=1)}this.getCamera=function(){return M},this.getFoveation=function(){if(!(h===null&&f===null))return l},this.setFoveation=function(J){l=J,h!==null&&(h.fixedFoveation=J),f!==null&&f.fixedFoveation!==void 0&&(f.fixedFoveation=J)},this.hasDepthSensing=function(){return _.texture!==null},this.getDepthSensingMesh=function(){return _.getMesh(M)};let _t=null;function pt(J,ht){if(u=ht.getViewerPose(c||o),g=ht,u!==null){let Ot=u.views;f!==null&&(t.setRenderTargetFramebuffer(b,f.framebuffer),t.setRenderTarget(b));let lt=!1;Ot.length!==M.cameras.length&&(M.cameras.length=0,lt=!0);for(let Yt=0;Yt<Ot.length;Yt++){let Ut=Ot[Yt],Qt=null;if(f!==null)Qt=f.getViewport(Ut);else{let mt=d.getViewSubImage(h,Ut);Qt=mt.viewport,Yt===0&&(t.setRenderTargetTextures(b,mt.colorTexture,h.ignoreDepthValues?void 0:mt.depthStencilTexture),t.setRenderTarget(b))}let st=E[Yt];st===void 0&&(st=new Un,st.layers.enable(Yt),st.viewport=new De,E[Yt]=st),st.matrix.fromArray(Ut.transform.matrix),st.matrix.decompose(st.position,st.quaternion,st.scale),st.projectionMatrix.fromArray(Ut.projectionMatrix),st.projectionMatrixInverse.copy(st.projectionMatrix).invert(),st.viewport.set(Qt.x,Qt.y,Qt.width,Qt.height),Yt===0&&(M.matrix.copy(st.matrix),M.matrix.decompose(M.position,M.quaternion,M.scale)),lt===!0&&M.cameras.push(st)}let Ft=s.enabledFeatures;if(Ft&&Ft.includes("depth-sensing")){let Yt=d.getDepthInformation(Ot[0]);Yt&&Yt.isValid&&Yt.texture&&_.init(t,Yt,s.renderState)}}for(let Ot=0;Ot<y.length;Ot++){let lt=v[Ot],Ft=y[Ot];lt!==null&&Ft!==void 0&&Ft.update(lt,ht,c||o)}_t&&_t(J,ht),ht.detectedPlanes&&n.dispatchEvent({type:"planesdetected",data:ht}),g=null}let Zt=new Xg;Zt.setAnimationLoop(pt),this.setAnimationLoop=function(J){_t=J},this.dispose=function(){}}},tr=new ki,p1=new Ge;function m1(i,t){function e(m,p){m.matrixAutoUpdate===!0&&m.updateMatrix(),p.value.copy(m.matrix)}function n(m,p){p.color.getRGB(m.fogColor.value,Wg(i)),p.isFog?(m.fogNear.value=p.near,m.fogFar.value=p.far):p.isFogExp2&&(m.fogDensity.value=p.density)}function s(m,p,b,y,v){p.isMeshBasicMaterial||p.isMeshLambertMaterial?r(m,p):p.isMeshToonMaterial?(r(m,p),d(m,p)):p.isMeshPhongMaterial?(r(m,p),u(m,p)):p.isMeshStandardMaterial?(r(m,p),h(m,p),p.isMeshPhysicalMaterial&&f(m,p,v)):p.isMeshMatcapMaterial?(r(m,p),g(m,p)):p.isMeshDepthMaterial?r(m,p):p.isMeshDistanceMaterial?(r(m,p),_(m,p)):p.isMeshNormalMaterial?r(m,p):p.isLineBasicMaterial?(o(m,p),p.isLineDashedMaterial&&a(m,p)):p.isPointsMaterial?l(m,p,b,y):p.isSpriteMaterial?c(m,p):p.isShadowMaterial?(m.color.value.copy(p.color),m.opacity.value=p.opacity):p.isShaderMaterial&&(p.uniformsNeedUpdate=!1)}function r(m,p){m.opacity.value=p.opacity,p.color&&m.diffuse.value.copy(p.color),p.emissive&&m.emissive.value.copy(p.emissive).multiplyScalar(p.emissiveIntensity),p.map&&(m.map.value=p.map,e(p.map,m.mapTransform)),p.alphaMap&&(m.alphaMap.value=p.alphaMap,e(p.alphaMap,m.alphaMapTransform)),p.bumpMap&&(m.bumpMap.value=p.bumpMap,e(p.bumpMap,m.bumpMapTransform),m.bumpScale.value=p.bumpScale,p.side===zn&&(m.bumpScale.value*=-1)),p.normalMap&&(m.normalMap.value=p.normalMap,e(p.normalMap,m.normalMapTransform),m.normalScale.value.copy(p.normalScale),p.side===zn&&m.normalScale.value.negate()),p.displacementMap&&(m.displacementMap.value=p.displacementMap,e(p.displacementMap,m.displacementMapTransform),m.displacementScale.value=p.displacementScale,m.displacementBias.value=p.displacementBias),p.emissiveMap&&(m.emissiveMap.value=p.emissiveMap,e(p.emissiveMap,m.emissiveMapTransform)),p.specularMap&&(m.specularMap.value=p.specularMap,e(p.specularMap,m.specularMapTransform)),p.alphaTest>0&&(m.alphaTest.value=p.alphaTest);let b=t.get(p),y=b.envMap,v=b.envMapRotation;y&&(m.envMap.value=y,tr.copy(v),tr.x*=-1,tr.y*=-1,tr.z*=-1,y.isCubeTexture&&y.isRenderTargetTexture===!1&&(tr.y*=-1,tr.z*=-1),m.envMapRotation.value.setFromMatrix4(p1.makeRotationFromEuler(tr)),m.flipEnvMap.value=y.isCubeTexture&&y.isRenderTargetTexture===!1?-1:1,m.reflectivity.value=p.reflectivity,m.ior.value=p.ior,m.refractionRatio.value=p.refractionRatio),p.lightMap&&(m.lightMap.value=p.lightMap,m.lightMapIntensity.value=p.lightMapIntensity,e(p.lightMap,m.lightMapTransform)),p.aoMap&&(m.aoMap.value=p.aoMap,m.aoMapIntensity.value=p.aoMapIntensity,e(p.aoMap,m.aoMapTransform))}function o(m,p){m.diffuse.value.copy(p.color),m.opacity.value=p.opacity,p.map&&(m.map.value=p.map,e(p.map,m.mapTransform))}function a(m,p){m.dashSize.value=p.dashSize,m.totalSize.value=p.dashSize+p.gapSize,m.scale.value=p.scale}function l(m,p,b,y){m.diffuse.value.copy(p.color),m.opacity.value=p.opacity,m.size.value=p.size*b,m.scale.value=y*.5,p.map&&(m.map.value=p.map,e(p.map,m.uvTransform)),p.alphaMap&&(m.alphaMap.value=p.alphaMap,e(p.alphaMap,m.alphaMapTransform)),p.alphaTest>0&&(m.alphaTest.value=p.alphaTest)}function c(m,p){m.diffuse.value.copy(p.color),m.opacity.value=p.opacity,m.rotation.value=p.rotation,p.map&&(m.map.value=p.map,e(p.map,m.mapTransform)),p.alphaMap&&(m.alphaMap.value=p.alphaMap,e(p.alphaMap,m.alphaMapTransform)),p.alphaTest>0&&(m.alphaTest.value=p.alphaTest)}function u(m,p){m.specular.value.copy(p.specular),m.shininess.value=Math.max(p.shininess,1e-4)}function d(m,p){p.gradientMap&&(m.gradientMap.value=p.gradientMap)}function h(m,p){m.metalness.value=p.metalness,p.metalnessMap&&(m.metalnessMap.value=p.metalnessMap,e(p.metalnessMap,m.metalnessMapTransform)),m.roughness.value=p.roughness,p.roughnessMap&&(m.roughnessMap.value=p.roughnessMap,e(p.roughnessMap,m.roughnessMapTransform)),p.envMap&&(m.envMapIntensity.value=p.envMapIntensity)}function f(m,p,b){m.ior.value=p.ior,p.sheen>0&&(m.sheenColor.value.copy(p.sheenColor).multiplyScalar(p.sheen),m.sheenRoughness.value=p.sheenRoughness,p.sheenColorMap&&(m.sheenColorMap.value=p.sheenColorMap,e(p.sheenColorMap,m.sheenColorMapTransform)),p.sheenRoughnessMap&&(m.sheenRoughnessMap.value=p.sheenRoughnessMap,e(p.sheenRoughnessMap,m.sheenRoughnessMapTransform))),p.clearcoat>0&&(m.clearcoat.value=p.clearcoat,m.clearcoatRoughness.value=p.clearcoatRoughness,p.clearcoatMap&&(m.clearcoatMap.value=p.clearcoatMap,e(p.clearcoatMap,m.clearcoatMapTransform)),p.clearcoatRoughnessMap&&(m.clearcoatRoughnessMap.value=p.clearcoatRoughnessMap,e(p.clearcoatRoughnessMap,m.clearcoatRoughnessMapTransform)),p.clearcoatNormalMap&&(m.clearcoatNormalMap.value=p.clearcoatNormalMap,e(p.clearcoatNormalMap,m.clearcoatNormalMapTransform),m.clearcoatNormalScale.value.copy(p.clearcoatNormalScale),p.side===zn&&m.clearcoatNormalScale.value.negate())),p.dispersion>0&&(m.dispersion.value=p.dispersion),p.iridescence>0&&(m.iridescence.value=p.iridescence,m.iridescenceIOR.value=p.iridescenceIOR,m.iridescenceThicknessMinimum.value=p.iridescenceThicknessRange[0],m.iridescenceThicknessMaximum.value=p.iridescenceThicknessRange[1],p.iridescenceMap&&(m.iridescenceMap.value=p.iridescenceMap,e(p.iridescenceMap,m.iridescenceMapTransform)),p.iridescenceThicknessMap&&(m.iridescenceThicknessMap.value=p.iridescenceThicknessMap,e(p.iridescenceThicknessMap,m.iridescenceThicknessMapTransform))),p.transmission>0&&(m.transmission.value=p.transmission,m.transmissionSamplerMap.value=b.texture,m.transmissionSamplerSize.value.set(b.width,b.height),p.transmissionMap&&(m.transmissionMap.value=p.transmissionMap,e(p.transmissionMap,m.transmissionMapTransform)),m.thickness.value=p.thickness,p.thicknessMap&&(m.thicknessMap.value=p.thicknessMap,e(p.thicknessMap,m.thicknessMapTransform)),m.attenuationDistance.value=p.attenuationDistance,m.attenuationColor.value.copy(p.attenuationColor)),p.anisotropy>0&&(m.anisotropyVector.value.set(p.anisotropy*Math.cos(p.anisotropyRotation),p.anisotropy*Math.sin(p.anisotropyRotation)),p.anisotropyMap&&(m.anisotropyMap.value=p.anisotropyMap,e(p.anisotropyMap,m.anisotropyMapTransform))),m.specularIntensity.value=p.specularIntensity,m.specularColor.value.copy(p.specularColor),p.specularColorMap&&(m.specularColorMap.value=p.specularColorMap,e(p.specularColorMap,m.specularColorMapTransform)),p.specularIntensityMap&&(m.specularIntensityMap.value=p.specularIntensityMap,e(p.specularIntensityMap,m.specularIntensityMapTransform))}function g(m,p){p.matcap&&(m.matcap.value=p.matcap)}function _(m,p){let b=t.get(p).light;m.referencePosition.value.setFromMatrixPosition(b.matrixWorld),m.nearDistance.value=b.shadow.camera.near,m.farDistance.value=b.shadow.camera.far}return{refreshFogUniforms:n,refreshMaterialUniforms:s}}function g1(i,t,e,n){let s={},r={},o=[],a=i.getParameter(i.MAX_UNIFORM_BUFFER_BINDINGS);function l(b,y){let v=y.program;n.uniformBlockBinding(b,v)}function c(b,y){let v=s[b.id];v===void 0&&(g(b),v=u(b),s[b.id]=v,b.addEventListener("dispose",m));let N=y.program;n.updateUBOMapping(b,N);let P=t.render.frame;r[b.id]!==P&&(h(b),r[b.id]=P)}function u(b){let y=d();b.__bindingPointIndex=y;let v=i.createBuffer(),N=b.__size,P=b.usage;return i.bindBuffer(i.UNIFORM_BUFFER,v),i.bufferData(i.UNIFORM_BUFFER,N,P),i.bindBuffer(i.UNIFORM_BUFFER,null),i.bindBufferBase(i.UNIFORM_BUFFER,y,v),v}function d(){for(let b=0;b<a;b++)if(o.indexOf(b)===-1)return o.push(b),b;return console.error("THREE.WebGLRenderer: Maximum number of simultaneously usable uniforms groups reached."),0}function h(b){let y=s[b.id],v=b.uniforms,N=b.__cache;i.bindBuffer(i.UNIFORM_BUFFER,y);for(let P=0,R=v.length;P<R;P++){let F=Array.isArray(v[P])?v[P]:[v[P]];for(let E=0,M=F.length;E<M;E++){let A=F[E];if(f(A,P,E,N)===!0){let W=A.__offset,G=Array.isArray(A.value)?A.value:[A.value],X=0;for(let Z=0;Z<G.length;Z++){let Y=G[Z],nt=_(Y);typeof Y=="number"||typeof Y=="boolean"?(A.__data[0]=Y,i.bufferSubData(i.UNIFORM_BUFFER,W+X,A.__data)):Y.isMatrix3?(A.__data[0]=Y.elements[0],A.__data[1]=Y.elements[1],A.__data[2]=Y.elements[2],A.__data[3]=0,A.__data[4]=Y.elements[3],A.__data[5]=Y.elements[4],A.__data[6]=Y.elements[5],A.__data[7]=0,A.__data[8]=Y.elements[6],A.__data[9]=Y.elements[7],A.__data[10]=Y.elements[8],A.__data[11]=0):(Y.toArray(A.__data,X),X+=nt.storage/Float32Array.BYTES_PER_ELEMENT)}i.bufferSubData(i.UNIFORM_BUFFER,W,A.__data)}}}i.bindBuffer(i.UNIFORM_BUFFER,null)}function f(b,y,v,N){let P=b.value,R=y+"_"+v;if(N[R]===void 0)return typeof P=="number"||typeof P=="boolean"?N[R]=P:N[R]=P.clone(),!0;{let F=N[R];if(typeof P=="number"||typeof P=="boolean"){if(F!==P)return N[R]=P,!0}else if(F.equals(P)===!1)return F.copy(P),!0}return!1}function g(b){let y=b.uniforms,v=0,N=16;for(let R=0,F=y.length;R<F;R++){let E=Array.isArray(y[R])?y[R]:[y[R]];for(let M=0,A=E.length;M<A;M++){let W=E[M],G=Array.isArray(W.value)?W.value:[W.value];for(let X=0,Z=G.length;X<Z;X++){let Y=G[X],nt=_(Y),Q=v%N,ft=Q%nt.boundary,at=Q+ft;v+=ft,at!==0&&N-at<nt.storage&&(v+=N-at),W.__data=new Float32Array(nt.storage/Float32Array.BYTES_PER_ELEMENT),W.__offset=v,v+=nt.storage}}}let P=v%N;return P>0&&(v+=N-P),b.__size=v,b.__cache={},this}function _(b){let y={boundary:0,storage:0};return typeof b=="number"||typeof b=="boolean"?(y.boundary=4,y.storage=4):b.isVector2?(y.boundary=8,y.storage=8):b.isVector3||b.isColor?(y.boundary=16,y.storage=12):b.isVector4?(y.boundary=16,y.storage=16):b.isMatrix3?(y.boundary=48,y.storage=48):b.isMatrix4?(y.boundary=64,y.storage=64):b.isTexture?console.warn("THREE.WebGLRenderer: Texture samplers can not be part of an uniforms group."):console.warn("THREE.WebGLRenderer: Unsupported uniform value type.",b),y}function m(b){let y=b.target;y.removeEventListener("dispose",m);let v=o.indexOf(y.__bindingPointIndex);o.splice(v,1),i.deleteBuffer(s[y.id]),delete s[y.id],delete r[y.id]}function p(){for(let b in s)i.deleteBuffer(s[b]);o=[],s={},r={}}return{bind:l,update:c,dispose:p}}var Ll=class{constructor(t={}){let{canvas:e=Mv(),context:n=null,depth:s=!0,stencil:r=!1,alpha:o=!1,antialias:a=!1,premultipliedAlpha:l=!0,preserveDrawingBuffer:c=!1,powerPreference:u="default",failIfMajorPerformanceCaveat:d=!1,reverseDepthBuffer:h=!1}=t;this.isWebGLRenderer=!0;let f;if(n!==null){if(typeof WebGLRenderingContext<"u"&&n instanceof WebGLRenderingContext)throw new Error("THREE.WebGLRenderer: WebGL 1 is not supported since r163.");f=n.getContextAttributes().alpha}else f=o;let g=new Uint32Array(4),_=new Int32Array(4),m=null,p=null,b=[],y=[];this.domElement=e,this.debug={checkShaderErrors:!0,onShaderError:null},this.autoClear=!0,this.autoClearColor=!0,this.autoClearDepth=!0,this.autoClearStencil=!0,this.sortObjects=!0,this.clippingPlanes=[],this.localClippingEnabled=!1,this._outputColorSpace=ai,this.toneMapping=Is,this.toneMappingExposure=1;let v=this,N=!1,P=0,R=0,F=null,E=-1,M=null,A=new De,W=new De,G=null,X=new oe(0),Z=0,Y=e.width,nt=e.height,Q=1,ft=null,at=null,_t=new De(0,0,Y,nt),pt=new De(0,0,Y,nt),Zt=!1,J=new Ko,ht=!1,Ot=!1,lt=new Ge,Ft=new Ge,Yt=new D,Ut=new De,Qt={background:null,fog:null,environment:null,overrideMaterial:null,isScene:!0},st=!1;function mt(){return F===null?Q:1}let U=n;function Vt(T,z){return e.getContext(T,z)}try{let T={alpha:!0,depth:s,stencil:r,antialias:a,premultipliedAlpha:l,preserveDrawingBuffer:c,powerPreference:u,failIfMajorPerformanceCaveat:d};if("setAttribute"in e&&e.setAttribute("data-engine",`three.js r${Pd}`),e.addEventListener("webglcontextlost",ot,!1),e.addEventListener("webglcontextrestored",It,!1),e.addEventListener("webglcontextcreationerror",Pt,!1),U===null){let z="webgl2";if(U=Vt(z,T),U===null)throw Vt(z)?new Error("Error creating WebGL context with your selected attributes."):new Error("Error creating WebGL context.")}}catch(T){throw console.error("THREE.WebGLRenderer: "+T.message),T}let ut,Tt,xt,Jt,bt,C,S,O,tt,j,et,Nt,Mt,At,Kt,ct,wt,Xt,$t,Rt,ae,te,Se,B;function Et(){ut=new Lb(U),ut.init(),te=new h1(U,ut),Tt=new Tb(U,ut,t,te),xt=new a1(U,ut),Tt.reverseDepthBuffer&&h&&xt.buffers.depth.setReversed(!0),Jt=new Nb(U),bt=new $w,C=new c1(U,ut,xt,bt,Tt,te,Jt),S=new Cb(v),O=new Ib(v),tt=new Hv(U),Se=new wb(U,tt),j=new Db(U,tt,Jt,Se),et=new Ob(U,j,tt,Jt),$t=new Fb(U,Tt,C),ct=new Ab(bt),Nt=new Yw(v,S,O,ut,Tt,Se,ct),Mt=new m1(v,bt),At=new Jw,Kt=new n1(ut),Xt=new bb(v,S,O,xt,et,f,l),wt=new r1(v,et,Tt),B=new g1(U,Jt,Tt,xt),Rt=new Eb(U,ut,Jt),ae=new Ub(U,ut,Jt),Jt.programs=Nt.programs,v.capabilities=Tt,v.extensions=ut,v.properties=bt,v.renderLists=At,v.shadowMap=wt,v.state=xt,v.info=Jt}Et();let it=new od(v,U);this.xr=it,this.getContext=function(){return U},this.getContextAttributes=function(){return U.getContextAttributes()},this.forceContextLoss=function(){let T=ut.get("WEBGL_lose_context");T&&T.loseContext()},this.forceContextRestore=function(){let T=ut.get("WEBGL_lose_context");T&&T.restoreContext()},this.getPixelRatio=function(){return Q},this.setPixelRatio=function(T){T!==void 0&&(Q=T,this.setSize(Y,nt,!1))},this.getSize=function(T){return T.set(Y,nt)},this.setSize=function(T,z,q=!0){if(it.isPresenting){console.warn("THREE.WebGLRenderer: Can't change size while VR device is presenting.");return}Y=T,nt=z,e.width=Math.floor(T*Q),e.height=Math.floor(z*Q),q===!0&&(e.style.width=T+"px",e.style.height=z+"px"),this.setViewport(0,0,T,z)},this.getDrawingBufferSize=function(T){return T.set(Y*Q,nt*Q).floor()},this.setDrawingBufferSize=function(T,z,q){Y=T,nt=z,Q=q,e.width=Math.floor(T*q),e.height=Math.floor(z*q),this.setViewport(0,0,T,z)},this.getCurrentViewport=function(T){return T.copy(A)},this.getViewport=function(T){return T.copy(_t)},this.setViewport=function(T,z,q,K){T.isVector4?_t.set(T.x,T.y,T.z,T.w):_t.set(T,z,q,K),xt.viewport(A.copy(_t).multiplyScalar(Q).round())},this.getScissor=function(T){return T.copy(pt)},this.setScissor=function(T,z,q,K){T.isVector4?pt.set(T.x,T.y,T.z,T.w):pt.set(T,z,q,K),xt.scissor(W.copy(pt).multiplyScalar(Q).round())},this.getScissorTest=function(){return Zt},this.setScissorTest=function(T){xt.setScissorTest(Zt=T)},this.setOpaqueSort=function(T){ft=T},this.setTransparentSort=function(T){at=T},this.getClearColor=function(T){return T.copy(Xt.getClearColor())},this.setClearColor=function(){Xt.setClearColor.apply(Xt,arguments)},this.getClearAlpha=function(){return Xt.getClearAlpha()},this.setClearAlpha=function(){Xt.setClearAlpha.apply(Xt,arguments)},this.clear=function(T=!0,z=!0,q=!0){let K=0;if(T){let H=!1;if(F!==null){let yt=F.texture.format;H=yt===Od||yt===Fd||yt===Nd}if(H){let yt=F.texture.type,Ct=yt===cs||yt===or||yt===Zo||yt===ao||yt===Dd||yt===Ud,Gt=Xt.getClearColor(),Ht=Xt.getClearAlpha(),jt=Gt.r,ne=Gt.g,Wt=Gt.b;Ct?(g[0]=jt,g[1]=ne,g[2]=Wt,g[3]=Ht,U.clearBufferuiv(U.COLOR,0,g)):(_[0]=jt,_[1]=ne,_[2]=Wt,_[3]=Ht,U.clearBufferiv(U.COLOR,0,_))}else K|=U.COLOR_BUFFER_BIT}z&&(K|=U.DEPTH_BUFFER_BIT),q&&(K|=U.STENCIL_BUFFER_BIT,this.state.buffers.stencil.setMask(4294967295)),U.clear(K)},this.clearColor=function(){this.clear(!0,!1,!1)},this.clearDepth=function(){this.clear(!1,!0,!1)},this.clearStencil=function(){this.clear(!1,!1,!0)},this.dispose=function(){e.removeEventListener("webglcontextlost",ot,!1),e.removeEventListener("webglcontextrestored",It,!1),e.removeEventListener("webglcontextcreationerror",Pt,!1),At.dispose(),Kt.dispose(),bt.dispose(),S.dispose(),O.dispose(),et.dispose(),Se.dispose(),B.dispose(),Nt.dispose(),it.dispose(),it.removeEventListener("sessionstart",Yi),it.removeEventListener("sessionend",$i),Ke.stop()};function ot(T){T.preventDefault(),console.log("THREE.WebGLRenderer: Context Lost."),N=!0}function It(){console.log("THREE.WebGLRenderer: Context Restored."),N=!1;let T=Jt.autoReset,z=wt.enabled,q=wt.autoUpdate,K=wt.needsUpdate,H=wt.type;Et(),Jt.autoReset=T,wt.enabled=z,wt.autoUpdate=q,wt.needsUpdate=K,wt.type=H}function Pt(T){console.error("THREE.WebGLRenderer: A WebGL context could not be created. Reason: ",T.statusMessage)}function se(T){let z=T.target;z.removeEventListener("dispose",se),We(z)}function We(T){Bt(T),bt.remove(T)}function Bt(T){let z=bt.get(T).programs;z!==void 0&&(z.forEach(function(q){Nt.releaseProgram(q)}),T.isShaderMaterial&&Nt.releaseShaderCache(T))}this.renderBufferDirect=function(T,z,q,K,H,yt){z===null&&(z=Qt);let Ct=H.isMesh&&H.matrixWorld.determinant()<0,Gt=Os(T,z,q,K,H);xt.setMaterial(K,Ct);let Ht=q.index,jt=1;if(K.wireframe===!0){if(Ht=j.getWireframeAttribute(q),Ht===void 0)return;jt=2}let ne=q.drawRange,Wt=q.attributes.position,de=ne.start*jt,Te=(ne.start+ne.count)*jt;yt!==null&&(de=Math.max(de,yt.start*jt),Te=Math.min(Te,(yt.start+yt.count)*jt)),Ht!==null?(de=Math.max(de,0),Te=Math.min(Te,Ht.count)):Wt!=null&&(de=Math.max(de,0),Te=Math.min(Te,Wt.count));let Ce=Te-de;if(Ce<0||Ce===1/0)return;Se.setup(H,K,Gt,q,Ht);let dn,xe=Rt;if(Ht!==null&&(dn=tt.get(Ht),xe=ae,xe.setIndex(dn)),H.isMesh)K.wireframe===!0?(xt.setLineWidth(K.wireframeLinewidth*mt()),xe.setMode(U.LINES)):xe.setMode(U.TRIANGLES);else if(H.isLine){let zt=K.linewidth;zt===void 0&&(zt=1),xt.setLineWidth(zt*mt()),H.isLineSegments?xe.setMode(U.LINES):H.isLineLoop?xe.setMode(U.LINE_LOOP):xe.setMode(U.LINE_STRIP)}else H.isPoints?xe.setMode(U.POINTS):H.isSprite&&xe.setMode(U.TRIANGLES);if(H.isBatchedMesh)if(H._multiDrawInstances!==null)xe.renderMultiDrawInstances(H._multiDrawStarts,H._multiDrawCounts,H._multiDrawCount,H._multiDrawInstances);else if(ut.get("WEBGL_multi_draw"))xe.renderMultiDraw(H._multiDrawStarts,H._multiDrawCounts,H._multiDrawCount);else{let zt=H._multiDrawStarts,jn=H._multiDrawCounts,ye=H._multiDrawCount,An=Ht?tt.get(Ht).bytesPerElement:1,Ji=bt.get(K).currentProgram.getUniforms();for(let Cn=0;Cn<ye;Cn++)Ji.setValue(U,"_gl_DrawID",Cn),xe.render(zt[Cn]/An,jn[Cn])}else if(H.isInstancedMesh)xe.renderInstances(de,Ce,H.count);else if(q.isInstancedBufferGeometry){let zt=q._maxInstanceCount!==void 0?q._maxInstanceCount:1/0,jn=Math.min(q.instanceCount,zt);xe.renderInstances(de,Ce,jn)}else xe.render(de,Ce)};function he(T,z,q){T.transparent===!0&&T.side===Mi&&T.forceSinglePass===!1?(T.side=zn,T.needsUpdate=!0,mr(T,z,q),T.side=Ds,T.needsUpdate=!0,mr(T,z,q),T.side=Mi):mr(T,z,q)}this.compile=function(T,z,q=null){q===null&&(q=T),p=Kt.get(q),p.init(z),y.push(p),q.traverseVisible(function(H){H.isLight&&H.layers.test(z.layers)&&(p.pushLight(H),H.castShadow&&p.pushShadow(H))}),T!==q&&T.traverseVisible(function(H){H.isLight&&H.layers.test(z.layers)&&(p.pushLight(H),H.castShadow&&p.pushShadow(H))}),p.setupLights();let K=new Set;return T.traverse(function(H){if(!(H.isMesh||H.isPoints||H.isLine||H.isSprite))return;let yt=H.material;if(yt)if(Array.isArray(yt))for(let Ct=0;Ct<yt.length;Ct++){let Gt=yt[Ct];he(Gt,q,H),K.add(Gt)}else he(yt,q,H),K.add(yt)}),y.pop(),p=null,K},this.compileAsync=function(T,z,q=null){let K=this.compile(T,z,q);return new Promise(H=>{function yt(){if(K.forEach(function(Ct){bt.get(Ct).currentProgram.isReady()&&K.delete(Ct)}),K.size===0){H(T);return}setTimeout(yt,10)}ut.get("KHR_parallel_shader_compile")!==null?yt():setTimeout(yt,10)})};let Pe=null;function un(T){Pe&&Pe(T)}function Yi(){Ke.stop()}function $i(){Ke.start()}let Ke=new Xg;Ke.setAnimationLoop(un),typeof self<"u"&&Ke.setContext(self),this.setAnimationLoop=function(T){Pe=T,it.setAnimationLoop(T),T===null?Ke.stop():Ke.start()},it.addEventListener("sessionstart",Yi),it.addEventListener("sessionend",$i),this.render=function(T,z){if(z!==void 0&&z.isCamera!==!0){console.error("THREE.WebGLRenderer.render: camera is not an instance of THREE.Camera.");return}if(N===!0)return;if(T.matrixWorldAutoUpdate===!0&&T.updateMatrixWorld(),z.parent===null&&z.matrixWorldAutoUpdate===!0&&z.updateMatrixWorld(),it.enabled===!0&&it.isPresenting===!0&&(it.cameraAutoUpdate===!0&&it.updateCamera(z),z=it.getCamera()),T.isScene===!0&&T.onBeforeRender(v,T,z,F),p=Kt.get(T,y.length),p.init(z),y.push(p),Ft.multiplyMatrices(z.projectionMatrix,z.matrixWorldInverse),J.setFromProjectionMatrix(Ft),Ot=this.localClippingEnabled,ht=ct.init(this.clippingPlanes,Ot),m=At.get(T,b.length),m.init(),b.push(m),it.enabled===!0&&it.isPresenting===!0){let yt=v.xr.getDepthSensingMesh();yt!==null&&Ri(yt,z,-1/0,v.sortObjects)}Ri(T,z,0,v.sortObjects),m.finish(),v.sortObjects===!0&&m.sort(ft,at),st=it.enabled===!1||it.isPresenting===!1||it.hasDepthSensing()===!1,st&&Xt.addToRenderList(m,T),this.info.render.frame++,ht===!0&&ct.beginShadows();let q=p.state.shadowsArray;wt.render(q,T,z),ht===!0&&ct.endShadows(),this.info.autoReset===!0&&this.info.reset();let K=m.opaque,H=m.transmissive;if(p.setupLights(),z.isArrayCamera){let yt=z.cameras;if(H.length>0)for(let Ct=0,Gt=yt.length;Ct<Gt;Ct++){let Ht=yt[Ct];So(K,H,T,Ht)}st&&Xt.render(T);for(let Ct=0,Gt=yt.length;Ct<Gt;Ct++){let Ht=yt[Ct];Zi(m,T,Ht,Ht.viewport)}}else H.length>0&&So(K,H,T,z),st&&Xt.render(T),Zi(m,T,z);F!==null&&(C.updateMultisampleRenderTarget(F),C.updateRenderTargetMipmap(F)),T.isScene===!0&&T.onAfterRender(v,T,z),Se.resetDefaultState(),E=-1,M=null,y.pop(),y.length>0?(p=y[y.length-1],ht===!0&&ct.setGlobalState(v.clippingPlanes,p.state.camera)):p=null,b.pop(),b.length>0?m=b[b.length-1]:m=null};function Ri(T,z,q,K){if(T.visible===!1)return;if(T.layers.test(z.layers)){if(T.isGroup)q=T.renderOrder;else if(T.isLOD)T.autoUpdate===!0&&T.update(z);else if(T.isLight)p.pushLight(T),T.castShadow&&p.pushShadow(T);else if(T.isSprite){if(!T.frustumCulled||J.intersectsSprite(T)){K&&Ut.setFromMatrixPosition(T.matrixWorld).applyMatrix4(Ft);let Ct=et.update(T),Gt=T.material;Gt.visible&&m.push(T,Ct,Gt,q,Ut.z,null)}}else if((T.isMesh||T.isLine||T.isPoints)&&(!T.frustumCulled||J.intersectsObject(T))){let Ct=et.update(T),Gt=T.material;if(K&&(T.boundingSphere!==void 0?(T.boundingSphere===null&&T.computeBoundingSphere(),Ut.copy(T.boundingSphere.center)):(Ct.boundingSphere===null&&Ct.computeBoundingSphere(),Ut.copy(Ct.boundingSphere.center)),Ut.applyMatrix4(T.matrixWorld).applyMatrix4(Ft)),Array.isArray(Gt)){let Ht=Ct.groups;for(let jt=0,ne=Ht.length;jt<ne;jt++){let Wt=Ht[jt],de=Gt[Wt.materialIndex];de&&de.visible&&m.push(T,Ct,de,q,Ut.z,Wt)}}else Gt.visible&&m.push(T,Ct,Gt,q,Ut.z,null)}}let yt=T.children;for(let Ct=0,Gt=yt.length;Ct<Gt;Ct++)Ri(yt[Ct],z,q,K)}function Zi(T,z,q,K){let H=T.opaque,yt=T.transmissive,Ct=T.transparent;p.setupLightsView(q),ht===!0&&ct.setGlobalState(v.clippingPlanes,q),K&&xt.viewport(A.copy(K)),H.length>0&&Fs(H,z,q),yt.length>0&&Fs(yt,z,q),Ct.length>0&&Fs(Ct,z,q),xt.buffers.depth.setTest(!0),xt.buffers.depth.setMask(!0),xt.buffers.color.setMask(!0),xt.setPolygonOffset(!1)}function So(T,z,q,K){if((q.isScene===!0?q.overrideMaterial:null)!==null)return;p.state.transmissionRenderTarget[K.id]===void 0&&(p.state.transmissionRenderTarget[K.id]=new us(1,1,{generateMipmaps:!0,type:ut.has("EXT_color_buffer_half_float")||ut.has("EXT_color_buffer_float")?sa:cs,minFilter:rr,samples:4,stencilBuffer:r,resolveDepthBuffer:!1,resolveStencilBuffer:!1,colorSpace:ve.workingColorSpace}));let yt=p.state.transmissionRenderTarget[K.id],Ct=K.viewport||A;yt.setSize(Ct.z,Ct.w);let Gt=v.getRenderTarget();v.setRenderTarget(yt),v.getClearColor(X),Z=v.getClearAlpha(),Z<1&&v.setClearColor(16777215,.5),v.clear(),st&&Xt.render(q);let Ht=v.toneMapping;v.toneMapping=Is;let jt=K.viewport;if(K.viewport!==void 0&&(K.viewport=void 0),p.setupLightsView(K),ht===!0&&ct.setGlobalState(v.clippingPlanes,K),Fs(T,q,K),C.updateMultisampleRenderTarget(yt),C.updateRenderTargetMipmap(yt),ut.has("WEBGL_multisampled_render_to_texture")===!1){let ne=!1;for(let Wt=0,de=z.length;Wt<de;Wt++){let Te=z[Wt],Ce=Te.object,dn=Te.geometry,xe=Te.material,zt=Te.group;if(xe.side===Mi&&Ce.layers.test(K.layers)){let jn=xe.side;xe.side=zn,xe.needsUpdate=!0,ha(Ce,q,K,dn,xe,zt),xe.side=jn,xe.needsUpdate=!0,ne=!0}}ne===!0&&(C.updateMultisampleRenderTarget(yt),C.updateRenderTargetMipmap(yt))}v.setRenderTarget(Gt),v.setClearColor(X,Z),jt!==void 0&&(K.viewport=jt),v.toneMapping=Ht}function Fs(T,z,q){let K=z.isScene===!0?z.overrideMaterial:null;for(let H=0,yt=T.length;H<yt;H++){let Ct=T[H],Gt=Ct.object,Ht=Ct.geometry,jt=K===null?Ct.material:K,ne=Ct.group;Gt.layers.test(q.layers)&&ha(Gt,z,q,Ht,jt,ne)}}function ha(T,z,q,K,H,yt){T.onBeforeRender(v,z,q,K,H,yt),T.modelViewMatrix.multiplyMatrices(q.matrixWorldInverse,T.matrixWorld),T.normalMatrix.getNormalMatrix(T.modelViewMatrix),H.onBeforeRender(v,z,q,K,T,yt),H.transparent===!0&&H.side===Mi&&H.forceSinglePass===!1?(H.side=zn,H.needsUpdate=!0,v.renderBufferDirect(q,z,K,H,T,yt),H.side=Ds,H.needsUpdate=!0,v.renderBufferDirect(q,z,K,H,T,yt),H.side=Mi):v.renderBufferDirect(q,z,K,H,T,yt),T.onAfterRender(v,z,q,K,H,yt)}function mr(T,z,q){z.isScene!==!0&&(z=Qt);let K=bt.get(T),H=p.state.lights,yt=p.state.shadowsArray,Ct=H.state.version,Gt=Nt.getParameters(T,H.state,yt,z,q),Ht=Nt.getProgramCacheKey(Gt),jt=K.programs;K.environment=T.isMeshStandardMaterial?z.environment:null,K.fog=z.fog,K.envMap=(T.isMeshStandardMaterial?O:S).get(T.envMap||K.environment),K.envMapRotation=K.environment!==null&&T.envMap===null?z.environmentRotation:T.envMapRotation,jt===void 0&&(T.addEventListener("dispose",se),jt=new Map,K.programs=jt);let ne=jt.get(Ht);if(ne!==void 0){if(K.currentProgram===ne&&K.lightsStateVersion===Ct)return ua(T,Gt),ne}else Gt.uniforms=Nt.getUniforms(T),T.onBeforeCompile(Gt,v),ne=Nt.acquireProgram(Gt,Ht),jt.set(Ht,ne),K.uniforms=Gt.uniforms;let Wt=K.uniforms;return(!T.isShaderMaterial&&!T.isRawShaderMaterial||T.clipping===!0)&&(Wt.clippingPlanes=ct.uniform),ua(T,Gt),K.needsLights=Ii(T),K.lightsStateVersion=Ct,K.needsLights&&(Wt.ambientLightColor.value=H.state.ambient,Wt.lightProbe.value=H.state.probe,Wt.directionalLights.value=H.state.directional,Wt.directionalLightShadows.value=H.state.directionalShadow,Wt.spotLights.value=H.state.spot,Wt.spotLightShadows.value=H.state.spotShadow,Wt.rectAreaLights.value=H.state.rectArea,Wt.ltc_1.value=H.state.rectAreaLTC1,Wt.ltc_2.value=H.state.rectAreaLTC2,Wt.pointLights.value=H.state.point,Wt.pointLightShadows.value=H.state.pointShadow,Wt.hemisphereLights.value=H.state.hemi,Wt.directionalShadowMap.value=H.state.directionalShadowMap,Wt.directionalShadowMatrix.value=H.state.directionalShadowMatrix,Wt.spotShadowMap.value=H.state.spotShadowMap,Wt.spotLightMatrix.value=H.state.spotLightMatrix,Wt.spotLightMap.value=H.state.spotLightMap,Wt.pointShadowMap.value=H.state.pointShadowMap,Wt.pointShadowMatrix.value=H.state.pointShadowMatrix),K.currentProgram=ne,K.uniformsList=null,ne}function Pi(T){if(T.uniformsList===null){let z=T.currentProgram.getUniforms();T.uniformsList=io.seqWithValue(z.seq,T.uniforms)}return T.uniformsList}function ua(T,z){let q=bt.get(T);q.outputColorSpace=z.outputColorSpace,q.batching=z.batching,q.batchingColor=z.batchingColor,q.instancing=z.instancing,q.instancingColor=z.instancingColor,q.instancingMorph=z.instancingMorph,q.skinning=z.skinning,q.morphTargets=z.morphTargets,q.morphNormals=z.morphNormals,q.morphColors=z.morphColors,q.morphTargetsCount=z.morphTargetsCount,q.numClippingPlanes=z.numClippingPlanes,q.numIntersection=z.numClipIntersection,q.vertexAlphas=z.vertexAlphas,q.vertexTangents=z.vertexTangents,q.toneMapping=z.toneMapping}function Os(T,z,q,K,H){z.isScene!==!0&&(z=Qt),C.resetTextureUnits();let yt=z.fog,Ct=K.isMeshStandardMaterial?z.environment:null,Gt=F===null?v.outputColorSpace:F.isXRRenderTarget===!0?F.texture.colorSpace:_o,Ht=(K.isMeshStandardMaterial?O:S).get(K.envMap||Ct),jt=K.vertexColors===!0&&!!q.attributes.color&&q.attributes.color.itemSize===4,ne=!!q.attributes.tangent&&(!!K.normalMap||K.anisotropy>0),Wt=!!q.morphAttributes.position,de=!!q.morphAttributes.normal,Te=!!q.morphAttributes.color,Ce=Is;K.toneMapped&&(F===null||F.isXRRenderTarget===!0)&&(Ce=v.toneMapping);let dn=q.morphAttributes.position||q.morphAttributes.normal||q.morphAttributes.color,xe=dn!==void 0?dn.length:0,zt=bt.get(K),jn=p.state.lights;if(ht===!0&&(Ot===!0||T!==M)){let Fn=T===M&&K.id===E;ct.setState(K,T,Fn)}let ye=!1;K.version===zt.__version?(zt.needsLights&&zt.lightsStateVersion!==jn.state.version||zt.outputColorSpace!==Gt||H.isBatchedMesh&&zt.batching===!1||!H.isBatchedMesh&&zt.batching===!0||H.isBatchedMesh&&zt.batchingColor===!0&&H.colorTexture===null||H.isBatchedMesh&&zt.batchingColor===!1&&H.colorTexture!==null||H.isInstancedMesh&&zt.instancing===!1||!H.isInstancedMesh&&zt.instancing===!0||H.isSkinnedMesh&&zt.skinning===!1||!H.isSkinnedMesh&&zt.skinning===!0||H.isInstancedMesh&&zt.instancingColor===!0&&H.instanceColor===null||H.isInstancedMesh&&zt.instancingColor===!1&&H.instanceColor!==null||H.isInstancedMesh&&zt.instancingMorph===!0&&H.morphTexture===null||H.isInstancedMesh&&zt.instancingMorph===!1&&H.morphTexture!==null||zt.envMap!==Ht||K.fog===!0&&zt.fog!==yt||zt.numClippingPlanes!==void 0&&(zt.numClippingPlanes!==ct.numPlanes||zt.numIntersection!==ct.numIntersection)||zt.vertexAlphas!==jt||zt.vertexTangents!==ne||zt.morphTargets!==Wt||zt.morphNormals!==de||zt.morphColors!==Te||zt.toneMapping!==Ce||zt.morphTargetsCount!==xe)&&(ye=!0):(ye=!0,zt.__version=K.version);let An=zt.currentProgram;ye===!0&&(An=mr(K,z,H));let Ji=!1,Cn=!1,Bs=!1,Ne=An.getUniforms(),Hn=zt.uniforms;if(xt.useProgram(An.program)&&(Ji=!0,Cn=!0,Bs=!0),K.id!==E&&(E=K.id,Cn=!0),Ji||M!==T){xt.buffers.depth.getReversed()?(lt.copy(T.projectionMatrix),bv(lt),wv(lt),Ne.setValue(U,"projectionMatrix",lt)):Ne.setValue(U,"projectionMatrix",T.projectionMatrix),Ne.setValue(U,"viewMatrix",T.matrixWorldInverse);let fi=Ne.map.cameraPosition;fi!==void 0&&fi.setValue(U,Yt.setFromMatrixPosition(T.matrixWorld)),Tt.logarithmicDepthBuffer&&Ne.setValue(U,"logDepthBufFC",2/(Math.log(T.far+1)/Math.LN2)),(K.isMeshPhongMaterial||K.isMeshToonMaterial||K.isMeshLambertMaterial||K.isMeshBasicMaterial||K.isMeshStandardMaterial||K.isShaderMaterial)&&Ne.setValue(U,"isOrthographic",T.isOrthographicCamera===!0),M!==T&&(M=T,Cn=!0,Bs=!0)}if(H.isSkinnedMesh){Ne.setOptional(U,H,"bindMatrix"),Ne.setOptional(U,H,"bindMatrixInverse");let Fn=H.skeleton;Fn&&(Fn.boneTexture===null&&Fn.computeBoneTexture(),Ne.setValue(U,"boneTexture",Fn.boneTexture,C))}H.isBatchedMesh&&(Ne.setOptional(U,H,"batchingTexture"),Ne.setValue(U,"batchingTexture",H._matricesTexture,C),Ne.setOptional(U,H,"batchingIdTexture"),Ne.setValue(U,"batchingIdTexture",H._indirectTexture,C),Ne.setOptional(U,H,"batchingColorTexture"),H._colorsTexture!==null&&Ne.setValue(U,"batchingColorTexture",H._colorsTexture,C));let ms=q.morphAttributes;if((ms.position!==void 0||ms.normal!==void 0||ms.color!==void 0)&&$t.update(H,q,An),(Cn||zt.receiveShadow!==H.receiveShadow)&&(zt.receiveShadow=H.receiveShadow,Ne.setValue(U,"receiveShadow",H.receiveShadow)),K.isMeshGouraudMaterial&&K.envMap!==null&&(Hn.envMap.value=Ht,Hn.flipEnvMap.value=Ht.isCubeTexture&&Ht.isRenderTargetTexture===!1?-1:1),K.isMeshStandardMaterial&&K.envMap===null&&z.environment!==null&&(Hn.envMapIntensity.value=z.environmentIntensity),Cn&&(Ne.setValue(U,"toneMappingExposure",v.toneMappingExposure),zt.needsLights&&da(Hn,Bs),yt&&K.fog===!0&&Mt.refreshFogUniforms(Hn,yt),Mt.refreshMaterialUniforms(Hn,K,Q,nt,p.state.transmissionRenderTarget[T.id]),io.upload(U,Pi(zt),Hn,C)),K.isShaderMaterial&&K.uniformsNeedUpdate===!0&&(io.upload(U,Pi(zt),Hn,C),K.uniformsNeedUpdate=!1),K.isSpriteMaterial&&Ne.setValue(U,"center",H.center),Ne.setValue(U,"modelViewMatrix",H.modelViewMatrix),Ne.setValue(U,"normalMatrix",H.normalMatrix),Ne.setValue(U,"modelMatrix",H.matrixWorld),K.isShaderMaterial||K.isRawShaderMaterial){let Fn=K.uniformsGroups;for(let fi=0,Qn=Fn.length;fi<Qn;fi++){let zs=Fn[fi];B.update(zs,An),B.bind(zs,An)}}return An}function da(T,z){T.ambientLightColor.needsUpdate=z,T.lightProbe.needsUpdate=z,T.directionalLights.needsUpdate=z,T.directionalLightShadows.needsUpdate=z,T.pointLights.needsUpdate=z,T.pointLightShadows.needsUpdate=z,T.spotLights.needsUpdate=z,T.spotLightShadows.needsUpdate=z,T.rectAreaLights.needsUpdate=z,T.hemisphereLights.needsUpdate=z}function Ii(T){return T.isMeshLambertMaterial||T.isMeshToonMaterial||T.isMeshPhongMaterial||T.isMeshStandardMaterial||T.isShadowMaterial||T.isShaderMaterial&&T.lights===!0}this.getActiveCubeFace=function(){return P},this.getActiveMipmapLevel=function(){return R},this.getRenderTarget=function(){return F},this.setRenderTargetTextures=function(T,z,q){bt.get(T.texture).__webglTexture=z,bt.get(T.depthTexture).__webglTexture=q;let K=bt.get(T);K.__hasExternalTextures=!0,K.__autoAllocateDepthBuffer=q===void 0,K.__autoAllocateDepthBuffer||ut.has("WEBGL_multisampled_render_to_texture")===!0&&(console.warn("THREE.WebGLRenderer: Render-to-texture extension was disabled because an external texture was provided"),K.__useRenderToTexture=!1)},this.setRenderTargetFramebuffer=function(T,z){let q=bt.get(T);q.__webglFramebuffer=z,q.__useDefaultFramebuffer=z===void 0},this.setRenderTarget=function(T,z=0,q=0){F=T,P=z,R=q;let K=!0,H=null,yt=!1,Ct=!1;if(T){let Ht=bt.get(T);if(Ht.__useDefaultFramebuffer!==void 0)xt.bindFramebuffer(U.FRAMEBUFFER,null),K=!1;else if(Ht.__webglFramebuffer===void 0)C.setupRenderTarget(T);else if(Ht.__hasExternalTextures)C.rebindTextures(T,bt.get(T.texture).__webglTexture,bt.get(T.depthTexture).__webglTexture);else if(T.depthBuffer){let Wt=T.depthTexture;if(Ht.__boundDepthTexture!==Wt){if(Wt!==null&&bt.has(Wt)&&(T.width!==Wt.image.width||T.height!==Wt.image.height))throw new Error("WebGLRenderTarget: Attached DepthTexture is initialized to the incorrect size.");C.setupDepthRenderbuffer(T)}}let jt=T.texture;(jt.isData3DTexture||jt.isDataArrayTexture||jt.isCompressedArrayTexture)&&(Ct=!0);let ne=bt.get(T).__webglFramebuffer;T.isWebGLCubeRenderTarget?(Array.isArray(ne[z])?H=ne[z][q]:H=ne[z],yt=!0):T.samples>0&&C.useMultisampledRTT(T)===!1?H=bt.get(T).__webglMultisampledFramebuffer:Array.isArray(ne)?H=ne[q]:H=ne,A.copy(T.viewport),W.copy(T.scissor),G=T.scissorTest}else A.copy(_t).multiplyScalar(Q).floor(),W.copy(pt).multiplyScalar(Q).floor(),G=Zt;if(xt.bindFramebuffer(U.FRAMEBUFFER,H)&&K&&xt.drawBuffers(T,H),xt.viewport(A),xt.scissor(W),xt.setScissorTest(G),yt){let Ht=bt.get(T.texture);U.framebufferTexture2D(U.FRAMEBUFFER,U.COLOR_ATTACHMENT0,U.TEXTURE_CUBE_MAP_POSITIVE_X+z,Ht.__webglTexture,q)}else if(Ct){let Ht=bt.get(T.texture),jt=z||0;U.framebufferTextureLayer(U.FRAMEBUFFER,U.COLOR_ATTACHMENT0,Ht.__webglTexture,q||0,jt)}E=-1},this.readRenderTargetPixels=function(T,z,q,K,H,yt,Ct){if(!(T&&T.isWebGLRenderTarget)){console.error("THREE.WebGLRenderer.readRenderTargetPixels: renderTarget is not THREE.WebGLRenderTarget.");return}let Gt=bt.get(T).__webglFramebuffer;if(T.isWebGLCubeRenderTarget&&Ct!==void 0&&(Gt=Gt[Ct]),Gt){xt.bindFramebuffer(U.FRAMEBUFFER,Gt);try{let Ht=T.texture,jt=Ht.format,ne=Ht.type;if(!Tt.textureFormatReadable(jt)){console.error("THREE.WebGLRenderer.readRenderTargetPixels: renderTarget is not in RGBA or implementation defined format.");return}if(!Tt.textureTypeReadable(ne)){console.error("THREE.WebGLRenderer.readRenderTargetPixels: renderTarget is not in UnsignedByteType or implementation defined type.");return}z>=0&&z<=T.width-K&&q>=0&&q<=T.height-H&&U.readPixels(z,q,K,H,te.convert(jt),te.convert(ne),yt)}finally{let Ht=F!==null?bt.get(F).__webglFramebuffer:null;xt.bindFramebuffer(U.FRAMEBUFFER,Ht)}}},this.readRenderTargetPixelsAsync=async function(T,z,q,K,H,yt,Ct){if(!(T&&T.isWebGLRenderTarget))throw new Error("THREE.WebGLRenderer.readRenderTargetPixels: renderTarget is not THREE.WebGLRenderTarget.");let Gt=bt.get(T).__webglFramebuffer;if(T.isWebGLCubeRenderTarget&&Ct!==void 0&&(Gt=Gt[Ct]),Gt){let Ht=T.texture,jt=Ht.format,ne=Ht.type;if(!Tt.textureFormatReadable(jt))throw new Error("THREE.WebGLRenderer.readRenderTargetPixelsAsync: renderTarget is not in RGBA or implementation defined format.");if(!Tt.textureTypeReadable(ne))throw new Error("THREE.WebGLRenderer.readRenderTargetPixelsAsync: renderTarget is not in UnsignedByteType or implementation defined type.");if(z>=0&&z<=T.width-K&&q>=0&&q<=T.height-H){xt.bindFramebuffer(U.FRAMEBUFFER,Gt);let Wt=U.createBuffer();U.bindBuffer(U.PIXEL_PACK_BUFFER,Wt),U.bufferData(U.PIXEL_PACK_BUFFER,yt.byteLength,U.STREAM_READ),U.readPixels(z,q,K,H,te.convert(jt),te.convert(ne),0);let de=F!==null?bt.get(F).__webglFramebuffer:null;xt.bindFramebuffer(U.FRAMEBUFFER,de);let Te=U.fenceSync(U.SYNC_GPU_COMMANDS_COMPLETE,0);return U.flush(),await Sv(U,Te,4),U.bindBuffer(U.PIXEL_PACK_BUFFER,Wt),U.getBufferSubData(U.PIXEL_PACK_BUFFER,0,yt),U.deleteBuffer(Wt),U.deleteSync(Te),yt}else throw new Error("THREE.WebGLRenderer.readRenderTargetPixelsAsync: requested read bounds are out of range.")}},this.copyFramebufferToTexture=function(T,z=null,q=0){T.isTexture!==!0&&(Go("WebGLRenderer: copyFramebufferToTexture function signature has changed."),z=arguments[0]||null,T=arguments[1]);let K=Math.pow(2,-q),H=Math.floor(T.image.width*K),yt=Math.floor(T.image.height*K),Ct=z!==null?z.x:0,Gt=z!==null?z.y:0;C.setTexture2D(T,0),U.copyTexSubImage2D(U.TEXTURE_2D,q,0,0,Ct,Gt,H,yt),xt.unbindTexture()},this.copyTextureToTexture=function(T,z,q=null,K=null,H=0){T.isTexture!==!0&&(Go("WebGLRenderer: copyTextureToTexture function signature has changed."),K=arguments[0]||null,T=arguments[1],z=arguments[2],H=arguments[3]||0,q=null);let yt,Ct,Gt,Ht,jt,ne,Wt,de,Te,Ce=T.isCompressedTexture?T.mipmaps[H]:T.image;q!==null?(yt=q.max.x-q.min.x,Ct=q.max.y-q.min.y,Gt=q.isBox3?q.max.z-q.min.z:1,Ht=q.min.x,jt=q.min.y,ne=q.isBox3?q.min.z:0):(yt=Ce.width,Ct=Ce.height,Gt=Ce.depth||1,Ht=0,jt=0,ne=0),K!==null?(Wt=K.x,de=K.y,Te=K.z):(Wt=0,de=0,Te=0);let dn=te.convert(z.format),xe=te.convert(z.type),zt;z.isData3DTexture?(C.setTexture3D(z,0),zt=U.TEXTURE_3D):z.isDataArrayTexture||z.isCompressedArrayTexture?(C.setTexture2DArray(z,0),zt=U.TEXTURE_2D_ARRAY):(C.setTexture2D(z,0),zt=U.TEXTURE_2D),U.pixelStorei(U.UNPACK_FLIP_Y_WEBGL,z.flipY),U.pixelStorei(U.UNPACK_PREMULTIPLY_ALPHA_WEBGL,z.premultiplyAlpha),U.pixelStorei(U.UNPACK_ALIGNMENT,z.unpackAlignment);let jn=U.getParameter(U.UNPACK_ROW_LENGTH),ye=U.getParameter(U.UNPACK_IMAGE_HEIGHT),An=U.getParameter(U.UNPACK_SKIP_PIXELS),Ji=U.getParameter(U.UNPACK_SKIP_ROWS),Cn=U.getParameter(U.UNPACK_SKIP_IMAGES);U.pixelStorei(U.UNPACK_ROW_LENGTH,Ce.width),U.pixelStorei(U.UNPACK_IMAGE_HEIGHT,Ce.height),U.pixelStorei(U.UNPACK_SKIP_PIXELS,Ht),U.pixelStorei(U.UNPACK_SKIP_ROWS,jt),U.pixelStorei(U.UNPACK_SKIP_IMAGES,ne);let Bs=T.isDataArrayTexture||T.isData3DTexture,Ne=z.isDataArrayTexture||z.isData3DTexture;if(T.isRenderTargetTexture||T.isDepthTexture){let Hn=bt.get(T),ms=bt.get(z),Fn=bt.get(Hn.__renderTarget),fi=bt.get(ms.__renderTarget);xt.bindFramebuffer(U.READ_FRAMEBUFFER,Fn.__webglFramebuffer),xt.bindFramebuffer(U.DRAW_FRAMEBUFFER,fi.__webglFramebuffer);for(let Qn=0;Qn<Gt;Qn++)Bs&&U.framebufferTextureLayer(U.READ_FRAMEBUFFER,U.COLOR_ATTACHMENT0,bt.get(T).__webglTexture,H,ne+Qn),T.isDepthTexture?(Ne&&U.framebufferTextureLayer(U.DRAW_FRAMEBUFFER,U.COLOR_ATTACHMENT0,bt.get(z).__webglTexture,H,Te+Qn),U.blitFramebuffer(Ht,jt,yt,Ct,Wt,de,yt,Ct,U.DEPTH_BUFFER_BIT,U.NEAREST)):Ne?U.copyTexSubImage3D(zt,H,Wt,de,Te+Qn,Ht,jt,yt,Ct):U.copyTexSubImage2D(zt,H,Wt,de,Te+Qn,Ht,jt,yt,Ct);xt.bindFramebuffer(U.READ_FRAMEBUFFER,null),xt.bindFramebuffer(U.DRAW_FRAMEBUFFER,null)}else Ne?T.isDataTexture||T.isData3DTexture?U.texSubImage3D(zt,H,Wt,de,Te,yt,Ct,Gt,dn,xe,Ce.data):z.isCompressedArrayTexture?U.compressedTexSubImage3D(zt,H,Wt,de,Te,yt,Ct,Gt,dn,Ce.data):U.texSubImage3D(zt,H,Wt,de,Te,yt,Ct,Gt,dn,xe,Ce):T.isDataTexture?U.texSubImage2D(U.TEXTURE_2D,H,Wt,de,yt,Ct,dn,xe,Ce.data):T.isCompressedTexture?U.compressedTexSubImage2D(U.TEXTURE_2D,H,Wt,de,Ce.width,Ce.height,dn,Ce.data):U.texSubImage2D(U.TEXTURE_2D,H,Wt,de,yt,Ct,dn,xe,Ce);U.pixelStorei(U.UNPACK_ROW_LENGTH,jn),U.pixelStorei(U.UNPACK_IMAGE_HEIGHT,ye),U.pixelStorei(U.UNPACK_SKIP_PIXELS,An),U.pixelStorei(U.UNPACK_SKIP_ROWS,Ji),U.pixelStorei(U.UNPACK_SKIP_IMAGES,Cn),H===0&&z.generateMipmaps&&U.generateMipmap(zt),xt.unbindTexture()},this.copyTextureToTexture3D=function(T,z,q=null,K=null,H=0){return T.isTexture!==!0&&(Go("WebGLRenderer: copyTextureToTexture3D function signature has changed."),q=arguments[0]||null,K=arguments[1]||null,T=arguments[2],z=arguments[3],H=arguments[4]||0),Go('WebGLRenderer: copyTextureToTexture3D function has been deprecated. Use "copyTextureToTexture" instead.'),this.copyTextureToTexture(T,z,q,K,H)},this.initRenderTarget=function(T){bt.get(T).__webglFramebuffer===void 0&&C.setupRenderTarget(T)},this.initTexture=function(T){T.isCubeTexture?C.setTextureCube(T,0):T.isData3DTexture?C.setTexture3D(T,0):T.isDataArrayTexture||T.isCompressedArrayTexture?C.setTexture2DArray(T,0):C.setTexture2D(T,0),xt.unbindTexture()},this.resetState=function(){P=0,R=0,F=null,xt.reset(),Se.reset()},typeof __THREE_DEVTOOLS__<"u"&&__THREE_DEVTOOLS__.dispatchEvent(new CustomEvent("observe",{detail:this}))}get coordinateSystem(){return as}get outputColorSpace(){return this._outputColorSpace}set outputColorSpace(t){this._outputColorSpace=t;let e=this.getContext();e.drawingBufferColorspace=ve._getDrawingBufferColorSpace(t),e.unpackColorSpace=ve._getUnpackColorSpace()}};var Dl=class extends Tn{constructor(){super(),this.isScene=!0,this.type="Scene",this.background=null,this.environment=null,this.fog=null,this.backgroundBlurriness=0,this.backgroundIntensity=1,this.backgroundRotation=new ki,this.environmentIntensity=1,this.environmentRotation=new ki,this.overrideMaterial=null,typeof __THREE_DEVTOOLS__<"u"&&__THREE_DEVTOOLS__.dispatchEvent(new CustomEvent("observe",{detail:this}))}copy(t,e){return super.copy(t,e),t.background!==null&&(this.background=t.background.clone()),t.environment!==null&&(this.environment=t.environment.clone()),t.fog!==null&&(this.fog=t.fog.clone()),this.backgroundBlurriness=t.backgroundBlurriness,this.backgroundIntensity=t.backgroundIntensity,this.backgroundRotation.copy(t.backgroundRotation),this.environmentIntensity=t.environmentIntensity,this.environmentRotation.copy(t.environmentRotation),t.overrideMaterial!==null&&(this.overrideMaterial=t.overrideMaterial.clone()),this.matrixAutoUpdate=t.matrixAutoUpdate,this}toJSON(t){let e=super.toJSON(t);return this.fog!==null&&(e.object.fog=this.fog.toJSON()),this.backgroundBlurriness>0&&(e.object.backgroundBlurriness=this.backgroundBlurriness),this.backgroundIntensity!==1&&(e.object.backgroundIntensity=this.backgroundIntensity),e.object.backgroundRotation=this.backgroundRotation.toArray(),this.environmentIntensity!==1&&(e.object.environmentIntensity=this.environmentIntensity),e.object.environmentRotation=this.environmentRotation.toArray(),e}},ad=class{constructor(t,e){this.isInterleavedBuffer=!0,this.array=t,this.stride=e,this.count=t!==void 0?t.length/e:0,this.usage=Wu,this.updateRanges=[],this.version=0,this.uuid=Bi()}onUploadCallback(){}set needsUpdate(t){t===!0&&this.version++}setUsage(t){return this.usage=t,this}addUpdateRange(t,e){this.updateRanges.push({start:t,count:e})}clearUpdateRanges(){this.updateRanges.length=0}copy(t){return this.array=new t.array.constructor(t.array),this.count=t.count,this.stride=t.stride,this.usage=t.usage,this}copyAt(t,e,n){t*=this.stride,n*=e.stride;for(let s=0,r=this.stride;s<r;s++)this.array[t+s]=e.array[n+s];return this}set(t,e=0){return this.array.set(t,e),this}clone(t){t.arrayBuffers===void 0&&(t.arrayBuffers={}),this.array.buffer._uuid===void 0&&(this.array.buffer._uuid=Bi()),t.arrayBuffers[this.array.buffer._uuid]===void 0&&(t.arrayBuffers[this.array.buffer._uuid]=this.array.slice(0).buffer);let e=new this.array.constructor(t.arrayBuffers[this.array.buffer._uuid]),n=new this.constructor(e,this.stride);return n.setUsage(this.usage),n}onUpload(t){return this.onUploadCallback=t,this}toJSON(t){return t.arrayBuffers===void 0&&(t.arrayBuffers={}),this.array.buffer._uuid===void 0&&(this.array.buffer._uuid=Bi()),t.arrayBuffers[this.array.buffer._uuid]===void 0&&(t.arrayBuffers[this.array.buffer._uuid]=Array.from(new Uint32Array(this.array.buffer))),{uuid:this.uuid,buffer:this.array.buffer._uuid,type:this.array.constructor.name,stride:this.stride}}},Ln=new D,Hi=class i{constructor(t,e,n,s=!1){this.isInterleavedBufferAttribute=!0,this.name="",this.data=t,this.itemSize=e,this.offset=n,this.normalized=s}get count(){return this.data.count}get array(){return this.data.array}set needsUpdate(t){this.data.needsUpdate=t}applyMatrix4(t){for(let e=0,n=this.data.count;e<n;e++)Ln.fromBufferAttribute(this,e),Ln.applyMatrix4(t),this.setXYZ(e,Ln.x,Ln.y,Ln.z);return this}applyNormalMatrix(t){for(let e=0,n=this.count;e<n;e++)Ln.fromBufferAttribute(this,e),Ln.applyNormalMatrix(t),this.setXYZ(e,Ln.x,Ln.y,Ln.z);return this}transformDirection(t){for(let e=0,n=this.count;e<n;e++)Ln.fromBufferAttribute(this,e),Ln.transformDirection(t),this.setXYZ(e,Ln.x,Ln.y,Ln.z);return this}getComponent(t,e){let n=this.array[t*this.data.stride+this.offset+e];return this.normalized&&(n=Si(n,this.array)),n}setComponent(t,e,n){return this.normalized&&(n=Re(n,this.array)),this.data.array[t*this.data.stride+this.offset+e]=n,this}setX(t,e){return this.normalized&&(e=Re(e,this.array)),this.data.array[t*this.data.stride+this.offset]=e,this}setY(t,e){return this.normalized&&(e=Re(e,this.array)),this.data.array[t*this.data.stride+this.offset+1]=e,this}setZ(t,e){return this.normalized&&(e=Re(e,this.array)),this.data.array[t*this.data.stride+this.offset+2]=e,this}setW(t,e){return this.normalized&&(e=Re(e,this.array)),this.data.array[t*this.data.stride+this.offset+3]=e,this}getX(t){let e=this.data.array[t*this.data.stride+this.offset];return this.normalized&&(e=Si(e,this.array)),e}getY(t){let e=this.data.array[t*this.data.stride+this.offset+1];return this.normalized&&(e=Si(e,this.array)),e}getZ(t){let e=this.data.array[t*this.data.stride+this.offset+2];return this.normalized&&(e=Si(e,this.array)),e}getW(t){let e=this.data.array[t*this.data.stride+this.offset+3];return this.normalized&&(e=Si(e,this.array)),e}setXY(t,e,n){return t=t*this.data.stride+this.offset,this.normalized&&(e=Re(e,this.array),n=Re(n,this.array)),this.data.array[t+0]=e,this.data.array[t+1]=n,this}setXYZ(t,e,n,s){return t=t*this.data.stride+this.offset,this.normalized&&(e=Re(e,this.array),n=Re(n,this.array),s=Re(s,this.array)),this.data.array[t+0]=e,this.data.array[t+1]=n,this.data.array[t+2]=s,this}setXYZW(t,e,n,s,r){return t=t*this.data.stride+this.offset,this.normalized&&(e=Re(e,this.array),n=Re(n,this.array),s=Re(s,this.array),r=Re(r,this.array)),this.data.array[t+0]=e,this.data.array[t+1]=n,this.data.array[t+2]=s,this.data.array[t+3]=r,this}clone(t){if(t===void 0){console.log("THREE.InterleavedBufferAttribute.clone(): Cloning an interleaved buffer attribute will de-interleave buffer data.");let e=[];for(let n=0;n<this.count;n++){let s=n*this.data.stride+this.offset;for(let r=0;r<this.itemSize;r++)e.push(this.data.array[s+r])}return new Kn(new this.array.constructor(e),this.itemSize,this.normalized)}else return t.interleavedBuffers===void 0&&(t.interleavedBuffers={}),t.interleavedBuffers[this.data.uuid]===void 0&&(t.interleavedBuffers[this.data.uuid]=this.data.clone(t)),new i(t.interleavedBuffers[this.data.uuid],this.itemSize,this.offset,this.normalized)}toJSON(t){if(t===void 0){console.log("THREE.InterleavedBufferAttribute.toJSON(): Serializing an interleaved buffer attribute will de-interleave buffer data.");let e=[];for(let n=0;n<this.count;n++){let s=n*this.data.stride+this.offset;for(let r=0;r<this.itemSize;r++)e.push(this.data.array[s+r])}return{itemSize:this.itemSize,type:this.array.constructor.name,array:e,normalized:this.normalized}}else return t.interleavedBuffers===void 0&&(t.interleavedBuffers={}),t.interleavedBuffers[this.data.uuid]===void 0&&(t.interleavedBuffers[this.data.uuid]=this.data.toJSON(t)),{isInterleavedBufferAttribute:!0,itemSize:this.itemSize,data:this.data.uuid,offset:this.offset,normalized:this.normalized}}};var jo=class extends Us{static get type(){return"LineBasicMaterial"}constructor(t){super(),this.isLineBasicMaterial=!0,this.color=new oe(16777215),this.map=null,this.linewidth=1,this.linecap="round",this.linejoin="round",this.fog=!0,this.setValues(t)}copy(t){return super.copy(t),this.color.copy(t.color),this.map=t.map,this.linewidth=t.linewidth,this.linecap=t.linecap,this.linejoin=t.linejoin,this.fog=t.fog,this}},Ul=new D,Nl=new D,pg=new Ge,Ho=new co,rl=new zi,jh=new D,mg=new D,Fl=class extends Tn{constructor(t=new we,e=new jo){super(),this.isLine=!0,this.type="Line",this.geometry=t,this.material=e,this.updateMorphTargets()}copy(t,e){return super.copy(t,e),this.material=Array.isArray(t.material)?t.material.slice():t.material,this.geometry=t.geometry,this}computeLineDistances(){let t=this.geometry;if(t.index===null){let e=t.attributes.position,n=[0];for(let s=1,r=e.count;s<r;s++)Ul.fromBufferAttribute(e,s-1),Nl.fromBufferAttribute(e,s),n[s]=n[s-1],n[s]+=Ul.distanceTo(Nl);t.setAttribute("lineDistance",new ee(n,1))}else console.warn("THREE.Line.computeLineDistances(): Computation only possible with non-indexed BufferGeometry.");return this}raycast(t,e){let n=this.geometry,s=this.matrixWorld,r=t.params.Line.threshold,o=n.drawRange;if(n.boundingSphere===null&&n.computeBoundingSphere(),rl.copy(n.boundingSphere),rl.applyMatrix4(s),rl.radius+=r,t.ray.intersectsSphere(rl)===!1)return;pg.copy(s).invert(),Ho.copy(t.ray).applyMatrix4(pg);let a=r/((this.scale.x+this.scale.y+this.scale.z)/3),l=a*a,c=this.isLineSegments?2:1,u=n.index,h=n.attributes.position;if(u!==null){let f=Math.max(0,o.start),g=Math.min(u.count,o.start+o.count);for(let _=f,m=g-1;_<m;_+=c){let p=u.getX(_),b=u.getX(_+1),y=ol(this,t,Ho,l,p,b);y&&e.push(y)}if(this.isLineLoop){let _=u.getX(g-1),m=u.getX(f),p=ol(this,t,Ho,l,_,m);p&&e.push(p)}}else{let f=Math.max(0,o.start),g=Math.min(h.count,o.start+o.count);for(let _=f,m=g-1;_<m;_+=c){let p=ol(this,t,Ho,l,_,_+1);p&&e.push(p)}if(this.isLineLoop){let _=ol(this,t,Ho,l,g-1,f);_&&e.push(_)}}}updateMorphTargets(){let e=this.geometry.morphAttributes,n=Object.keys(e);if(n.length>0){let s=e[n[0]];if(s!==void 0){this.morphTargetInfluences=[],this.morphTargetDictionary={};for(let r=0,o=s.length;r<o;r++){let a=s[r].name||String(r);this.morphTargetInfluences.push(0),this.morphTargetDictionary[a]=r}}}}};function ol(i,t,e,n,s,r){let o=i.geometry.attributes.position;if(Ul.fromBufferAttribute(o,s),Nl.fromBufferAttribute(o,r),e.distanceSqToSegment(Ul,Nl,jh,mg)>n)return;jh.applyMatrix4(i.matrixWorld);let l=t.ray.origin.distanceTo(jh);if(!(l<t.near||l>t.far))return{distance:l,point:mg.clone().applyMatrix4(i.matrixWorld),index:s,face:null,faceIndex:null,barycoord:null,object:i}}var gg=new D,_g=new D,cn=class extends Fl{constructor(t,e){super(t,e),this.isLineSegments=!0,this.type="LineSegments"}computeLineDistances(){let t=this.geometry;if(t.index===null){let e=t.attributes.position,n=[];for(let s=0,r=e.count;s<r;s+=2)gg.fromBufferAttribute(e,s),_g.fromBufferAttribute(e,s+1),n[s]=s===0?0:n[s-1],n[s+1]=n[s]+gg.distanceTo(_g);t.setAttribute("lineDistance",new ee(n,1))}else console.warn("THREE.LineSegments.computeLineDistances(): Computation only possible with non-indexed BufferGeometry.");return this}},Ol=class extends Fl{constructor(t,e){super(t,e),this.isLineLoop=!0,this.type="LineLoop"}};var ui=class{constructor(){this.type="Curve",this.arcLengthDivisions=200}getPoint(){return console.warn("THREE.Curve: .getPoint() not implemented."),null}getPointAt(t,e){let n=this.getUtoTmapping(t);return this.getPoint(n,e)}getPoints(t=5){let e=[];for(let n=0;n<=t;n++)e.push(this.getPoint(n/t));return e}getSpacedPoints(t=5){let e=[];for(let n=0;n<=t;n++)e.push(this.getPointAt(n/t));return e}getLength(){let t=this.getLengths();return t[t.length-1]}getLengths(t=this.arcLengthDivisions){if(this.cacheArcLengths&&this.cacheArcLengths.length===t+1&&!this.needsUpdate)return this.cacheArcLengths;this.needsUpdate=!1;let e=[],n,s=this.getPoint(0),r=0;e.push(0);for(let o=1;o<=t;o++)n=this.getPoint(o/t),r+=n.distanceTo(s),e.push(r),s=n;return this.cacheArcLengths=e,e}updateArcLengths(){this.needsUpdate=!0,this.getLengths()}getUtoTmapping(t,e){let n=this.getLengths(),s=0,r=n.length,o;e?o=e:o=t*n[r-1];let a=0,l=r-1,c;for(;a<=l;)if(s=Math.floor(a+(l-a)/2),c=n[s]-o,c<0)a=s+1;else if(c>0)l=s-1;else{l=s;break}if(s=l,n[s]===o)return s/(r-1);let u=n[s],h=n[s+1]-u,f=(o-u)/h;return(s+f)/(r-1)}getTangent(t,e){let s=t-1e-4,r=t+1e-4;s<0&&(s=0),r>1&&(r=1);let o=this.getPoint(s),a=this.getPoint(r),l=e||(o.isVector2?new gt:new D);return l.copy(a).sub(o).normalize(),l}getTangentAt(t,e){let n=this.getUtoTmapping(t);return this.getTangent(n,e)}computeFrenetFrames(t,e){let n=new D,s=[],r=[],o=[],a=new D,l=new Ge;for(let f=0;f<=t;f++){let g=f/t;s[f]=this.getTangentAt(g,new D)}r[0]=new D,o[0]=new D;let c=Number.MAX_VALUE,u=Math.abs(s[0].x),d=Math.abs(s[0].y),h=Math.abs(s[0].z);u<=c&&(c=u,n.set(1,0,0)),d<=c&&(c=d,n.set(0,1,0)),h<=c&&n.set(0,0,1),a.crossVectors(s[0],n).normalize(),r[0].crossVectors(s[0],a),o[0].crossVectors(s[0],r[0]);for(let f=1;f<=t;f++){if(r[f]=r[f-1].clone(),o[f]=o[f-1].clone(),a.crossVectors(s[f-1],s[f]),a.length()>Number.EPSILON){a.normalize();let g=Math.acos(on(s[f-1].dot(s[f]),-1,1));r[f].applyMatrix4(l.makeRotationAxis(a,g))}o[f].crossVectors(s[f],r[f])}if(e===!0){let f=Math.acos(on(r[0].dot(r[t]),-1,1));f/=t,s[0].dot(a.crossVectors(r[0],r[t]))>0&&(f=-f);for(let g=1;g<=t;g++)r[g].applyMatrix4(l.makeRotationAxis(s[g],f*g)),o[g].crossVectors(s[g],r[g])}return{tangents:s,normals:r,binormals:o}}clone(){return new this.constructor().copy(this)}copy(t){return this.arcLengthDivisions=t.arcLengthDivisions,this}toJSON(){let t={metadata:{version:4.6,type:"Curve",generator:"Curve.toJSON"}};return t.arcLengthDivisions=this.arcLengthDivisions,t.type=this.type,t}fromJSON(t){return this.arcLengthDivisions=t.arcLengthDivisions,this}},Qo=class extends ui{constructor(t=0,e=0,n=1,s=1,r=0,o=Math.PI*2,a=!1,l=0){super(),this.isEllipseCurve=!0,this.type="EllipseCurve",this.aX=t,this.aY=e,this.xRadius=n,this.yRadius=s,this.aStartAngle=r,this.aEndAngle=o,this.aClockwise=a,this.aRotation=l}getPoint(t,e=new gt){let n=e,s=Math.PI*2,r=this.aEndAngle-this.aStartAngle,o=Math.abs(r)<Number.EPSILON;for(;r<0;)r+=s;for(;r>s;)r-=s;r<Number.EPSILON&&(o?r=0:r=s),this.aClockwise===!0&&!o&&(r===s?r=-s:r=r-s);let a=this.aStartAngle+t*r,l=this.aX+this.xRadius*Math.cos(a),c=this.aY+this.yRadius*Math.sin(a);if(this.aRotation!==0){let u=Math.cos(this.aRotation),d=Math.sin(this.aRotation),h=l-this.aX,f=c-this.aY;l=h*u-f*d+this.aX,c=h*d+f*u+this.aY}return n.set(l,c)}copy(t){return super.copy(t),this.aX=t.aX,this.aY=t.aY,this.xRadius=t.xRadius,this.yRadius=t.yRadius,this.aStartAngle=t.aStartAngle,this.aEndAngle=t.aEndAngle,this.aClockwise=t.aClockwise,this.aRotation=t.aRotation,this}toJSON(){let t=super.toJSON();return t.aX=this.aX,t.aY=this.aY,t.xRadius=this.xRadius,t.yRadius=this.yRadius,t.aStartAngle=this.aStartAngle,t.aEndAngle=this.aEndAngle,t.aClockwise=this.aClockwise,t.aRotation=this.aRotation,t}fromJSON(t){return super.fromJSON(t),this.aX=t.aX,this.aY=t.aY,this.xRadius=t.xRadius,this.yRadius=t.yRadius,this.aStartAngle=t.aStartAngle,this.aEndAngle=t.aEndAngle,this.aClockwise=t.aClockwise,this.aRotation=t.aRotation,this}},ld=class extends Qo{constructor(t,e,n,s,r,o){super(t,e,n,n,s,r,o),this.isArcCurve=!0,this.type="ArcCurve"}};function kd(){let i=0,t=0,e=0,n=0;function s(r,o,a,l){i=r,t=a,e=-3*r+3*o-2*a-l,n=2*r-2*o+a+l}return{initCatmullRom:function(r,o,a,l,c){s(o,a,c*(a-r),c*(l-o))},initNonuniformCatmullRom:function(r,o,a,l,c,u,d){let h=(o-r)/c-(a-r)/(c+u)+(a-o)/u,f=(a-o)/u-(l-o)/(u+d)+(l-a)/d;h*=u,f*=u,s(o,a,h,f)},calc:function(r){let o=r*r,a=o*r;return i+t*r+e*o+n*a}}}var al=new D,Qh=new kd,tu=new kd,eu=new kd,cd=class extends ui{constructor(t=[],e=!1,n="centripetal",s=.5){super(),this.isCatmullRomCurve3=!0,this.type="CatmullRomCurve3",this.points=t,this.closed=e,this.curveType=n,this.tension=s}getPoint(t,e=new D){let n=e,s=this.points,r=s.length,o=(r-(this.closed?0:1))*t,a=Math.floor(o),l=o-a;this.closed?a+=a>0?0:(Math.floor(Math.abs(a)/r)+1)*r:l===0&&a===r-1&&(a=r-2,l=1);let c,u;this.closed||a>0?c=s[(a-1)%r]:(al.subVectors(s[0],s[1]).add(s[0]),c=al);let d=s[a%r],h=s[(a+1)%r];if(this.closed||a+2<r?u=s[(a+2)%r]:(al.subVectors(s[r-1],s[r-2]).add(s[r-1]),u=al),this.curveType==="centripetal"||this.curveType==="chordal"){let f=this.curveType==="chordal"?.5:.25,g=Math.pow(c.distanceToSquared(d),f),_=Math.pow(d.distanceToSquared(h),f),m=Math.pow(h.distanceToSquared(u),f);_<1e-4&&(_=1),g<1e-4&&(g=_),m<1e-4&&(m=_),Qh.initNonuniformCatmullRom(c.x,d.x,h.x,u.x,g,_,m),tu.initNonuniformCatmullRom(c.y,d.y,h.y,u.y,g,_,m),eu.initNonuniformCatmullRom(c.z,d.z,h.z,u.z,g,_,m)}else this.curveType==="catmullrom"&&(Qh.initCatmullRom(c.x,d.x,h.x,u.x,this.tension),tu.initCatmullRom(c.y,d.y,h.y,u.y,this.tension),eu.initCatmullRom(c.z,d.z,h.z,u.z,this.tension));return n.set(Qh.calc(l),tu.calc(l),eu.calc(l)),n}copy(t){super.copy(t),this.points=[];for(let e=0,n=t.points.length;e<n;e++){let s=t.points[e];this.points.push(s.clone())}return this.closed=t.closed,this.curveType=t.curveType,this.tension=t.tension,this}toJSON(){let t=super.toJSON();t.points=[];for(let e=0,n=this.points.length;e<n;e++){let s=this.points[e];t.points.push(s.toArray())}return t.closed=this.closed,t.curveType=this.curveType,t.tension=this.tension,t}fromJSON(t){super.fromJSON(t),this.points=[];for(let e=0,n=t.points.length;e<n;e++){let s=t.points[e];this.points.push(new D().fromArray(s))}return this.closed=t.closed,this.curveType=t.curveType,this.tension=t.tension,this}};function xg(i,t,e,n,s){let r=(n-t)*.5,o=(s-e)*.5,a=i*i,l=i*a;return(2*e-2*n+r+o)*l+(-3*e+3*n-2*r-o)*a+r*i+e}function _1(i,t){let e=1-i;return e*e*t}function x1(i,t){return 2*(1-i)*i*t}function y1(i,t){return i*i*t}function Yo(i,t,e,n){return _1(i,t)+x1(i,e)+y1(i,n)}function v1(i,t){let e=1-i;return e*e*e*t}function M1(i,t){let e=1-i;return 3*e*e*i*t}function S1(i,t){return 3*(1-i)*i*i*t}function b1(i,t){return i*i*i*t}function $o(i,t,e,n,s){return v1(i,t)+M1(i,e)+S1(i,n)+b1(i,s)}var Bl=class extends ui{constructor(t=new gt,e=new gt,n=new gt,s=new gt){super(),this.isCubicBezierCurve=!0,this.type="CubicBezierCurve",this.v0=t,this.v1=e,this.v2=n,this.v3=s}getPoint(t,e=new gt){let n=e,s=this.v0,r=this.v1,o=this.v2,a=this.v3;return n.set($o(t,s.x,r.x,o.x,a.x),$o(t,s.y,r.y,o.y,a.y)),n}copy(t){return super.copy(t),this.v0.copy(t.v0),this.v1.copy(t.v1),this.v2.copy(t.v2),this.v3.copy(t.v3),this}toJSON(){let t=super.toJSON();return t.v0=this.v0.toArray(),t.v1=this.v1.toArray(),t.v2=this.v2.toArray(),t.v3=this.v3.toArray(),t}fromJSON(t){return super.fromJSON(t),this.v0.fromArray(t.v0),this.v1.fromArray(t.v1),this.v2.fromArray(t.v2),this.v3.fromArray(t.v3),this}},hd=class extends ui{constructor(t=new D,e=new D,n=new D,s=new D){super(),this.isCubicBezierCurve3=!0,this.type="CubicBezierCurve3",this.v0=t,this.v1=e,this.v2=n,this.v3=s}getPoint(t,e=new D){let n=e,s=this.v0,r=this.v1,o=this.v2,a=this.v3;return n.set($o(t,s.x,r.x,o.x,a.x),$o(t,s.y,r.y,o.y,a.y),$o(t,s.z,r.z,o.z,a.z)),n}copy(t){return super.copy(t),this.v0.copy(t.v0),this.v1.copy(t.v1),this.v2.copy(t.v2),this.v3.copy(t.v3),this}toJSON(){let t=super.toJSON();return t.v0=this.v0.toArray(),t.v1=this.v1.toArray(),t.v2=this.v2.toArray(),t.v3=this.v3.toArray(),t}fromJSON(t){return super.fromJSON(t),this.v0.fromArray(t.v0),this.v1.fromArray(t.v1),this.v2.fromArray(t.v2),this.v3.fromArray(t.v3),this}},zl=class extends ui{constructor(t=new gt,e=new gt){super(),this.isLineCurve=!0,this.type="LineCurve",this.v1=t,this.v2=e}getPoint(t,e=new gt){let n=e;return t===1?n.copy(this.v2):(n.copy(this.v2).sub(this.v1),n.multiplyScalar(t).add(this.v1)),n}getPointAt(t,e){return this.getPoint(t,e)}getTangent(t,e=new gt){return e.subVectors(this.v2,this.v1).normalize()}getTangentAt(t,e){return this.getTangent(t,e)}copy(t){return super.copy(t),this.v1.copy(t.v1),this.v2.copy(t.v2),this}toJSON(){let t=super.toJSON();return t.v1=this.v1.toArray(),t.v2=this.v2.toArray(),t}fromJSON(t){return super.fromJSON(t),this.v1.fromArray(t.v1),this.v2.fromArray(t.v2),this}},ud=class extends ui{constructor(t=new D,e=new D){super(),this.isLineCurve3=!0,this.type="LineCurve3",this.v1=t,this.v2=e}getPoint(t,e=new D){let n=e;return t===1?n.copy(this.v2):(n.copy(this.v2).sub(this.v1),n.multiplyScalar(t).add(this.v1)),n}getPointAt(t,e){return this.getPoint(t,e)}getTangent(t,e=new D){return e.subVectors(this.v2,this.v1).normalize()}getTangentAt(t,e){return this.getTangent(t,e)}copy(t){return super.copy(t),this.v1.copy(t.v1),this.v2.copy(t.v2),this}toJSON(){let t=super.toJSON();return t.v1=this.v1.toArray(),t.v2=this.v2.toArray(),t}fromJSON(t){return super.fromJSON(t),this.v1.fromArray(t.v1),this.v2.fromArray(t.v2),this}},kl=class extends ui{constructor(t=new gt,e=new gt,n=new gt){super(),this.isQuadraticBezierCurve=!0,this.type="QuadraticBezierCurve",this.v0=t,this.v1=e,this.v2=n}getPoint(t,e=new gt){let n=e,s=this.v0,r=this.v1,o=this.v2;return n.set(Yo(t,s.x,r.x,o.x),Yo(t,s.y,r.y,o.y)),n}copy(t){return super.copy(t),this.v0.copy(t.v0),this.v1.copy(t.v1),this.v2.copy(t.v2),this}toJSON(){let t=super.toJSON();return t.v0=this.v0.toArray(),t.v1=this.v1.toArray(),t.v2=this.v2.toArray(),t}fromJSON(t){return super.fromJSON(t),this.v0.fromArray(t.v0),this.v1.fromArray(t.v1),this.v2.fromArray(t.v2),this}},dd=class extends ui{constructor(t=new D,e=new D,n=new D){super(),this.isQuadraticBezierCurve3=!0,this.type="QuadraticBezierCurve3",this.v0=t,this.v1=e,this.v2=n}getPoint(t,e=new D){let n=e,s=this.v0,r=this.v1,o=this.v2;return n.set(Yo(t,s.x,r.x,o.x),Yo(t,s.y,r.y,o.y),Yo(t,s.z,r.z,o.z)),n}copy(t){return super.copy(t),this.v0.copy(t.v0),this.v1.copy(t.v1),this.v2.copy(t.v2),this}toJSON(){let t=super.toJSON();return t.v0=this.v0.toArray(),t.v1=this.v1.toArray(),t.v2=this.v2.toArray(),t}fromJSON(t){return super.fromJSON(t),this.v0.fromArray(t.v0),this.v1.fromArray(t.v1),this.v2.fromArray(t.v2),this}},Vl=class extends ui{constructor(t=[]){super(),this.isSplineCurve=!0,this.type="SplineCurve",this.points=t}getPoint(t,e=new gt){let n=e,s=this.points,r=(s.length-1)*t,o=Math.floor(r),a=r-o,l=s[o===0?o:o-1],c=s[o],u=s[o>s.length-2?s.length-1:o+1],d=s[o>s.length-3?s.length-1:o+2];return n.set(xg(a,l.x,c.x,u.x,d.x),xg(a,l.y,c.y,u.y,d.y)),n}copy(t){super.copy(t),this.points=[];for(let e=0,n=t.points.length;e<n;e++){let s=t.points[e];this.points.push(s.clone())}return this}toJSON(){let t=super.toJSON();t.points=[];for(let e=0,n=this.points.length;e<n;e++){let s=this.points[e];t.points.push(s.toArray())}return t}fromJSON(t){super.fromJSON(t),this.points=[];for(let e=0,n=t.points.length;e<n;e++){let s=t.points[e];this.points.push(new gt().fromArray(s))}return this}},fd=Object.freeze({__proto__:null,ArcCurve:ld,CatmullRomCurve3:cd,CubicBezierCurve:Bl,CubicBezierCurve3:hd,EllipseCurve:Qo,LineCurve:zl,LineCurve3:ud,QuadraticBezierCurve:kl,QuadraticBezierCurve3:dd,SplineCurve:Vl}),pd=class extends ui{constructor(){super(),this.type="CurvePath",this.curves=[],this.autoClose=!1}add(t){this.curves.push(t)}closePath(){let t=this.curves[0].getPoint(0),e=this.curves[this.curves.length-1].getPoint(1);if(!t.equals(e)){let n=t.isVector2===!0?"LineCurve":"LineCurve3";this.curves.push(new fd[n](e,t))}return this}getPoint(t,e){let n=t*this.getLength(),s=this.getCurveLengths(),r=0;for(;r<s.length;){if(s[r]>=n){let o=s[r]-n,a=this.curves[r],l=a.getLength(),c=l===0?0:1-o/l;return a.getPointAt(c,e)}r++}return null}getLength(){let t=this.getCurveLengths();return t[t.length-1]}updateArcLengths(){this.needsUpdate=!0,this.cacheLengths=null,this.getCurveLengths()}getCurveLengths(){if(this.cacheLengths&&this.cacheLengths.length===this.curves.length)return this.cacheLengths;let t=[],e=0;for(let n=0,s=this.curves.length;n<s;n++)e+=this.curves[n].getLength(),t.push(e);return this.cacheLengths=t,t}getSpacedPoints(t=40){let e=[];for(let n=0;n<=t;n++)e.push(this.getPoint(n/t));return this.autoClose&&e.push(e[0]),e}getPoints(t=12){let e=[],n;for(let s=0,r=this.curves;s<r.length;s++){let o=r[s],a=o.isEllipseCurve?t*2:o.isLineCurve||o.isLineCurve3?1:o.isSplineCurve?t*o.points.length:t,l=o.getPoints(a);for(let c=0;c<l.length;c++){let u=l[c];n&&n.equals(u)||(e.push(u),n=u)}}return this.autoClose&&e.length>1&&!e[e.length-1].equals(e[0])&&e.push(e[0]),e}copy(t){super.copy(t),this.curves=[];for(let e=0,n=t.curves.length;e<n;e++){let s=t.curves[e];this.curves.push(s.clone())}return this.autoClose=t.autoClose,this}toJSON(){let t=super.toJSON();t.autoClose=this.autoClose,t.curves=[];for(let e=0,n=this.curves.length;e<n;e++){let s=this.curves[e];t.curves.push(s.toJSON())}return t}fromJSON(t){super.fromJSON(t),this.autoClose=t.autoClose,this.curves=[];for(let e=0,n=t.curves.length;e<n;e++){let s=t.curves[e];this.curves.push(new fd[s.type]().fromJSON(s))}return this}},Hl=class extends pd{constructor(t){super(),this.type="Path",this.currentPoint=new gt,t&&this.setFromPoints(t)}setFromPoints(t){this.moveTo(t[0].x,t[0].y);for(let e=1,n=t.length;e<n;e++)this.lineTo(t[e].x,t[e].y);return this}moveTo(t,e){return this.currentPoint.set(t,e),this}lineTo(t,e){let n=new zl(this.currentPoint.clone(),new gt(t,e));return this.curves.push(n),this.currentPoint.set(t,e),this}quadraticCurveTo(t,e,n,s){let r=new kl(this.currentPoint.clone(),new gt(t,e),new gt(n,s));return this.curves.push(r),this.currentPoint.set(n,s),this}bezierCurveTo(t,e,n,s,r,o){let a=new Bl(this.currentPoint.clone(),new gt(t,e),new gt(n,s),new gt(r,o));return this.curves.push(a),this.currentPoint.set(r,o),this}splineThru(t){let e=[this.currentPoint.clone()].concat(t),n=new Vl(e);return this.curves.push(n),this.currentPoint.copy(t[t.length-1]),this}arc(t,e,n,s,r,o){let a=this.currentPoint.x,l=this.currentPoint.y;return this.absarc(t+a,e+l,n,s,r,o),this}absarc(t,e,n,s,r,o){return this.absellipse(t,e,n,n,s,r,o),this}ellipse(t,e,n,s,r,o,a,l){let c=this.currentPoint.x,u=this.currentPoint.y;return this.absellipse(t+c,e+u,n,s,r,o,a,l),this}absellipse(t,e,n,s,r,o,a,l){let c=new Qo(t,e,n,s,r,o,a,l);if(this.curves.length>0){let d=c.getPoint(0);d.equals(this.currentPoint)||this.lineTo(d.x,d.y)}this.curves.push(c);let u=c.getPoint(1);return this.currentPoint.copy(u),this}copy(t){return super.copy(t),this.currentPoint.copy(t.currentPoint),this}toJSON(){let t=super.toJSON();return t.currentPoint=this.currentPoint.toArray(),t}fromJSON(t){return super.fromJSON(t),this.currentPoint.fromArray(t.currentPoint),this}};var Gl=class i extends we{constructor(t=1,e=32,n=0,s=Math.PI*2){super(),this.type="CircleGeometry",this.parameters={radius:t,segments:e,thetaStart:n,thetaLength:s},e=Math.max(3,e);let r=[],o=[],a=[],l=[],c=new D,u=new gt;o.push(0,0,0),a.push(0,0,1),l.push(.5,.5);for(let d=0,h=3;d<=e;d++,h+=3){let f=n+d/e*s;c.x=t*Math.cos(f),c.y=t*Math.sin(f),o.push(c.x,c.y,c.z),a.push(0,0,1),u.x=(o[h]/t+1)/2,u.y=(o[h+1]/t+1)/2,l.push(u.x,u.y)}for(let d=1;d<=e;d++)r.push(d,d+1,0);this.setIndex(r),this.setAttribute("position",new ee(o,3)),this.setAttribute("normal",new ee(a,3)),this.setAttribute("uv",new ee(l,2))}copy(t){return super.copy(t),this.parameters=Object.assign({},t.parameters),this}static fromJSON(t){return new i(t.radius,t.segments,t.thetaStart,t.thetaLength)}},ar=class i extends we{constructor(t=1,e=1,n=1,s=32,r=1,o=!1,a=0,l=Math.PI*2){super(),this.type="CylinderGeometry",this.parameters={radiusTop:t,radiusBottom:e,height:n,radialSegments:s,heightSegments:r,openEnded:o,thetaStart:a,thetaLength:l};let c=this;s=Math.floor(s),r=Math.floor(r);let u=[],d=[],h=[],f=[],g=0,_=[],m=n/2,p=0;b(),o===!1&&(t>0&&y(!0),e>0&&y(!1)),this.setIndex(u),this.setAttribute("position",new ee(d,3)),this.setAttribute("normal",new ee(h,3)),this.setAttribute("uv",new ee(f,2));function b(){let v=new D,N=new D,P=0,R=(e-t)/n;for(let F=0;F<=r;F++){let E=[],M=F/r,A=M*(e-t)+t;for(let W=0;W<=s;W++){let G=W/s,X=G*l+a,Z=Math.sin(X),Y=Math.cos(X);N.x=A*Z,N.y=-M*n+m,N.z=A*Y,d.push(N.x,N.y,N.z),v.set(Z,R,Y).normalize(),h.push(v.x,v.y,v.z),f.push(G,1-M),E.push(g++)}_.push(E)}for(let F=0;F<s;F++)for(let E=0;E<r;E++){let M=_[E][F],A=_[E+1][F],W=_[E+1][F+1],G=_[E][F+1];(t>0||E!==0)&&(u.push(M,A,G),P+=3),(e>0||E!==r-1)&&(u.push(A,W,G),P+=3)}c.addGroup(p,P,0),p+=P}function y(v){let N=g,P=new gt,R=new D,F=0,E=v===!0?t:e,M=v===!0?1:-1;for(let W=1;W<=s;W++)d.push(0,m*M,0),h.push(0,M,0),f.push(.5,.5),g++;let A=g;for(let W=0;W<=s;W++){let X=W/s*l+a,Z=Math.cos(X),Y=Math.sin(X);R.x=E*Y,R.y=m*M,R.z=E*Z,d.push(R.x,R.y,R.z),h.push(0,M,0),P.x=Z*.5+.5,P.y=Y*.5*M+.5,f.push(P.x,P.y),g++}for(let W=0;W<s;W++){let G=N+W,X=A+W;v===!0?u.push(X,X+1,G):u.push(X+1,X,G),F+=3}c.addGroup(p,F,v===!0?1:2),p+=F}}copy(t){return super.copy(t),this.parameters=Object.assign({},t.parameters),this}static fromJSON(t){return new i(t.radiusTop,t.radiusBottom,t.height,t.radialSegments,t.heightSegments,t.openEnded,t.thetaStart,t.thetaLength)}},Wl=class i extends ar{constructor(t=1,e=1,n=32,s=1,r=!1,o=0,a=Math.PI*2){super(0,t,e,n,s,r,o,a),this.type="ConeGeometry",this.parameters={radius:t,height:e,radialSegments:n,heightSegments:s,openEnded:r,thetaStart:o,thetaLength:a}}static fromJSON(t){return new i(t.radius,t.height,t.radialSegments,t.heightSegments,t.openEnded,t.thetaStart,t.thetaLength)}},md=class i extends we{constructor(t=[],e=[],n=1,s=0){super(),this.type="PolyhedronGeometry",this.parameters={vertices:t,indices:e,radius:n,detail:s};let r=[],o=[];a(s),c(n),u(),this.setAttribute("position",new ee(r,3)),this.setAttribute("normal",new ee(r.slice(),3)),this.setAttribute("uv",new ee(o,2)),s===0?this.computeVertexNormals():this.normalizeNormals();function a(b){let y=new D,v=new D,N=new D;for(let P=0;P<e.length;P+=3)f(e[P+0],y),f(e[P+1],v),f(e[P+2],N),l(y,v,N,b)}function l(b,y,v,N){let P=N+1,R=[];for(let F=0;F<=P;F++){R[F]=[];let E=b.clone().lerp(v,F/P),M=y.clone().lerp(v,F/P),A=P-F;for(let W=0;W<=A;W++)W===0&&F===P?R[F][W]=E:R[F][W]=E.clone().lerp(M,W/A)}for(let F=0;F<P;F++)for(let E=0;E<2*(P-F)-1;E++){let M=Math.floor(E/2);E%2===0?(h(R[F][M+1]),h(R[F+1][M]),h(R[F][M])):(h(R[F][M+1]),h(R[F+1][M+1]),h(R[F+1][M]))}}function c(b){let y=new D;for(let v=0;v<r.length;v+=3)y.x=r[v+0],y.y=r[v+1],y.z=r[v+2],y.normalize().multiplyScalar(b),r[v+0]=y.x,r[v+1]=y.y,r[v+2]=y.z}function u(){let b=new D;for(let y=0;y<r.length;y+=3){b.x=r[y+0],b.y=r[y+1],b.z=r[y+2];let v=m(b)/2/Math.PI+.5,N=p(b)/Math.PI+.5;o.push(v,1-N)}g(),d()}function d(){for(let b=0;b<o.length;b+=6){let y=o[b+0],v=o[b+2],N=o[b+4],P=Math.max(y,v,N),R=Math.min(y,v,N);P>.9&&R<.1&&(y<.2&&(o[b+0]+=1),v<.2&&(o[b+2]+=1),N<.2&&(o[b+4]+=1))}}function h(b){r.push(b.x,b.y,b.z)}function f(b,y){let v=b*3;y.x=t[v+0],y.y=t[v+1],y.z=t[v+2]}function g(){let b=new D,y=new D,v=new D,N=new D,P=new gt,R=new gt,F=new gt;for(let E=0,M=0;E<r.length;E+=9,M+=6){b.set(r[E+0],r[E+1],r[E+2]),y.set(r[E+3],r[E+4],r[E+5]),v.set(r[E+6],r[E+7],r[E+8]),P.set(o[M+0],o[M+1]),R.set(o[M+2],o[M+3]),F.set(o[M+4],o[M+5]),N.copy(b).add(y).add(v).divideScalar(3);let A=m(N);_(P,M+0,b,A),_(R,M+2,y,A),_(F,M+4,v,A)}}function _(b,y,v,N){N<0&&b.x===1&&(o[y]=b.x-1),v.x===0&&v.z===0&&(o[y]=N/2/Math.PI+.5)}function m(b){return Math.atan2(b.z,-b.x)}function p(b){return Math.atan2(-b.y,Math.sqrt(b.x*b.x+b.z*b.z))}}copy(t){return super.copy(t),this.parameters=Object.assign({},t.parameters),this}static fromJSON(t){return new i(t.vertices,t.indices,t.radius,t.details)}};var ll=new D,cl=new D,nu=new D,hl=new Fi,di=class extends we{constructor(t=null,e=1){if(super(),this.type="EdgesGeometry",this.parameters={geometry:t,thresholdAngle:e},t!==null){let s=Math.pow(10,4),r=Math.cos(eo*e),o=t.getIndex(),a=t.getAttribute("position"),l=o?o.count:a.count,c=[0,0,0],u=["a","b","c"],d=new Array(3),h={},f=[];for(let g=0;g<l;g+=3){o?(c[0]=o.getX(g),c[1]=o.getX(g+1),c[2]=o.getX(g+2)):(c[0]=g,c[1]=g+1,c[2]=g+2);let{a:_,b:m,c:p}=hl;if(_.fromBufferAttribute(a,c[0]),m.fromBufferAttribute(a,c[1]),p.fromBufferAttribute(a,c[2]),hl.getNormal(nu),d[0]=`${Math.round(_.x*s)},${Math.round(_.y*s)},${Math.round(_.z*s)}`,d[1]=`${Math.round(m.x*s)},${Math.round(m.y*s)},${Math.round(m.z*s)}`,d[2]=`${Math.round(p.x*s)},${Math.round(p.y*s)},${Math.round(p.z*s)}`,!(d[0]===d[1]||d[1]===d[2]||d[2]===d[0]))for(let b=0;b<3;b++){let y=(b+1)%3,v=d[b],N=d[y],P=hl[u[b]],R=hl[u[y]],F=`${v}_${N}`,E=`${N}_${v}`;E in h&&h[E]?(nu.dot(h[E].normal)<=r&&(f.push(P.x,P.y,P.z),f.push(R.x,R.y,R.z)),h[E]=null):F in h||(h[F]={index0:c[b],index1:c[y],normal:nu.clone()})}}for(let g in h)if(h[g]){let{index0:_,index1:m}=h[g];ll.fromBufferAttribute(a,_),cl.fromBufferAttribute(a,m),f.push(ll.x,ll.y,ll.z),f.push(cl.x,cl.y,cl.z)}this.setAttribute("position",new ee(f,3))}}copy(t){return super.copy(t),this.parameters=Object.assign({},t.parameters),this}},Ns=class extends Hl{constructor(t){super(t),this.uuid=Bi(),this.type="Shape",this.holes=[]}getPointsHoles(t){let e=[];for(let n=0,s=this.holes.length;n<s;n++)e[n]=this.holes[n].getPoints(t);return e}extractPoints(t){return{shape:this.getPoints(t),holes:this.getPointsHoles(t)}}copy(t){super.copy(t),this.holes=[];for(let e=0,n=t.holes.length;e<n;e++){let s=t.holes[e];this.holes.push(s.clone())}return this}toJSON(){let t=super.toJSON();t.uuid=this.uuid,t.holes=[];for(let e=0,n=this.holes.length;e<n;e++){let s=this.holes[e];t.holes.push(s.toJSON())}return t}fromJSON(t){super.fromJSON(t),this.uuid=t.uuid,this.holes=[];for(let e=0,n=t.holes.length;e<n;e++){let s=t.holes[e];this.holes.push(new Hl().fromJSON(s))}return this}},w1={triangulate:function(i,t,e=2){let n=t&&t.length,s=n?t[0]*e:i.length,r=Jg(i,0,s,e,!0),o=[];if(!r||r.next===r.prev)return o;let a,l,c,u,d,h,f;if(n&&(r=R1(i,t,r,e)),i.length>80*e){a=c=i[0],l=u=i[1];for(let g=e;g<s;g+=e)d=i[g],h=i[g+1],d<a&&(a=d),h<l&&(l=h),d>c&&(c=d),h>u&&(u=h);f=Math.max(c-a,u-l),f=f!==0?32767/f:0}return ta(r,o,e,a,l,f,0),o}};function Jg(i,t,e,n,s){let r,o;if(s===k1(i,t,e,n)>0)for(r=t;r<e;r+=n)o=yg(r,i[r],i[r+1],o);else for(r=e-n;r>=t;r-=n)o=yg(r,i[r],i[r+1],o);return o&&ac(o,o.next)&&(na(o),o=o.next),o}function lr(i,t){if(!i)return i;t||(t=i);let e=i,n;do if(n=!1,!e.steiner&&(ac(e,e.next)||$e(e.prev,e,e.next)===0)){if(na(e),e=t=e.prev,e===e.next)break;n=!0}else e=e.next;while(n||e!==t);return t}function ta(i,t,e,n,s,r,o){if(!i)return;!o&&r&&U1(i,n,s,r);let a=i,l,c;for(;i.prev!==i.next;){if(l=i.prev,c=i.next,r?T1(i,n,s,r):E1(i)){t.push(l.i/e|0),t.push(i.i/e|0),t.push(c.i/e|0),na(i),i=c.next,a=c.next;continue}if(i=c,i===a){o?o===1?(i=A1(lr(i),t,e),ta(i,t,e,n,s,r,2)):o===2&&C1(i,t,e,n,s,r):ta(lr(i),t,e,n,s,r,1);break}}}function E1(i){let t=i.prev,e=i,n=i.next;if($e(t,e,n)>=0)return!1;let s=t.x,r=e.x,o=n.x,a=t.y,l=e.y,c=n.y,u=s<r?s<o?s:o:r<o?r:o,d=a<l?a<c?a:c:l<c?l:c,h=s>r?s>o?s:o:r>o?r:o,f=a>l?a>c?a:c:l>c?l:c,g=n.next;for(;g!==t;){if(g.x>=u&&g.x<=h&&g.y>=d&&g.y<=f&&jr(s,a,r,l,o,c,g.x,g.y)&&$e(g.prev,g,g.next)>=0)return!1;g=g.next}return!0}function T1(i,t,e,n){let s=i.prev,r=i,o=i.next;if($e(s,r,o)>=0)return!1;let a=s.x,l=r.x,c=o.x,u=s.y,d=r.y,h=o.y,f=a<l?a<c?a:c:l<c?l:c,g=u<d?u<h?u:h:d<h?d:h,_=a>l?a>c?a:c:l>c?l:c,m=u>d?u>h?u:h:d>h?d:h,p=gd(f,g,t,e,n),b=gd(_,m,t,e,n),y=i.prevZ,v=i.nextZ;for(;y&&y.z>=p&&v&&v.z<=b;){if(y.x>=f&&y.x<=_&&y.y>=g&&y.y<=m&&y!==s&&y!==o&&jr(a,u,l,d,c,h,y.x,y.y)&&$e(y.prev,y,y.next)>=0||(y=y.prevZ,v.x>=f&&v.x<=_&&v.y>=g&&v.y<=m&&v!==s&&v!==o&&jr(a,u,l,d,c,h,v.x,v.y)&&$e(v.prev,v,v.next)>=0))return!1;v=v.nextZ}for(;y&&y.z>=p;){if(y.x>=f&&y.x<=_&&y.y>=g&&y.y<=m&&y!==s&&y!==o&&jr(a,u,l,d,c,h,y.x,y.y)&&$e(y.prev,y,y.next)>=0)return!1;y=y.prevZ}for(;v&&v.z<=b;){if(v.x>=f&&v.x<=_&&v.y>=g&&v.y<=m&&v!==s&&v!==o&&jr(a,u,l,d,c,h,v.x,v.y)&&$e(v.prev,v,v.next)>=0)return!1;v=v.nextZ}return!0}function A1(i,t,e){let n=i;do{let s=n.prev,r=n.next.next;!ac(s,r)&&Kg(s,n,n.next,r)&&ea(s,r)&&ea(r,s)&&(t.push(s.i/e|0),t.push(n.i/e|0),t.push(r.i/e|0),na(n),na(n.next),n=i=r),n=n.next}while(n!==i);return lr(n)}function C1(i,t,e,n,s,r){let o=i;do{let a=o.next.next;for(;a!==o.prev;){if(o.i!==a.i&&O1(o,a)){let l=jg(o,a);o=lr(o,o.next),l=lr(l,l.next),ta(o,t,e,n,s,r,0),ta(l,t,e,n,s,r,0);return}a=a.next}o=o.next}while(o!==i)}function R1(i,t,e,n){let s=[],r,o,a,l,c;for(r=0,o=t.length;r<o;r++)a=t[r]*n,l=r<o-1?t[r+1]*n:i.length,c=Jg(i,a,l,n,!1),c===c.next&&(c.steiner=!0),s.push(F1(c));for(s.sort(P1),r=0;r<s.length;r++)e=I1(s[r],e);return e}function P1(i,t){return i.x-t.x}function I1(i,t){let e=L1(i,t);if(!e)return t;let n=jg(e,i);return lr(n,n.next),lr(e,e.next)}function L1(i,t){let e=t,n=-1/0,s,r=i.x,o=i.y;do{if(o<=e.y&&o>=e.next.y&&e.next.y!==e.y){let h=e.x+(o-e.y)*(e.next.x-e.x)/(e.next.y-e.y);if(h<=r&&h>n&&(n=h,s=e.x<e.next.x?e:e.next,h===r))return s}e=e.next}while(e!==t);if(!s)return null;let a=s,l=s.x,c=s.y,u=1/0,d;e=s;do r>=e.x&&e.x>=l&&r!==e.x&&jr(o<c?r:n,o,l,c,o<c?n:r,o,e.x,e.y)&&(d=Math.abs(o-e.y)/(r-e.x),ea(e,i)&&(d<u||d===u&&(e.x>s.x||e.x===s.x&&D1(s,e)))&&(s=e,u=d)),e=e.next;while(e!==a);return s}function D1(i,t){return $e(i.prev,i,t.prev)<0&&$e(t.next,i,i.next)<0}function U1(i,t,e,n){let s=i;do s.z===0&&(s.z=gd(s.x,s.y,t,e,n)),s.prevZ=s.prev,s.nextZ=s.next,s=s.next;while(s!==i);s.prevZ.nextZ=null,s.prevZ=null,N1(s)}function N1(i){let t,e,n,s,r,o,a,l,c=1;do{for(e=i,i=null,r=null,o=0;e;){for(o++,n=e,a=0,t=0;t<c&&(a++,n=n.nextZ,!!n);t++);for(l=c;a>0||l>0&&n;)a!==0&&(l===0||!n||e.z<=n.z)?(s=e,e=e.nextZ,a--):(s=n,n=n.nextZ,l--),r?r.nextZ=s:i=s,s.prevZ=r,r=s;e=n}r.nextZ=null,c*=2}while(o>1);return i}function gd(i,t,e,n,s){return i=(i-e)*s|0,t=(t-n)*s|0,i=(i|i<<8)&16711935,i=(i|i<<4)&252645135,i=(i|i<<2)&858993459,i=(i|i<<1)&1431655765,t=(t|t<<8)&16711935,t=(t|t<<4)&252645135,t=(t|t<<2)&858993459,t=(t|t<<1)&1431655765,i|t<<1}function F1(i){let t=i,e=i;do(t.x<e.x||t.x===e.x&&t.y<e.y)&&(e=t),t=t.next;while(t!==i);return e}function jr(i,t,e,n,s,r,o,a){return(s-o)*(t-a)>=(i-o)*(r-a)&&(i-o)*(n-a)>=(e-o)*(t-a)&&(e-o)*(r-a)>=(s-o)*(n-a)}function O1(i,t){return i.next.i!==t.i&&i.prev.i!==t.i&&!B1(i,t)&&(ea(i,t)&&ea(t,i)&&z1(i,t)&&($e(i.prev,i,t.prev)||$e(i,t.prev,t))||ac(i,t)&&$e(i.prev,i,i.next)>0&&$e(t.prev,t,t.next)>0)}function $e(i,t,e){return(t.y-i.y)*(e.x-t.x)-(t.x-i.x)*(e.y-t.y)}function ac(i,t){return i.x===t.x&&i.y===t.y}function Kg(i,t,e,n){let s=dl($e(i,t,e)),r=dl($e(i,t,n)),o=dl($e(e,n,i)),a=dl($e(e,n,t));return!!(s!==r&&o!==a||s===0&&ul(i,e,t)||r===0&&ul(i,n,t)||o===0&&ul(e,i,n)||a===0&&ul(e,t,n))}function ul(i,t,e){return t.x<=Math.max(i.x,e.x)&&t.x>=Math.min(i.x,e.x)&&t.y<=Math.max(i.y,e.y)&&t.y>=Math.min(i.y,e.y)}function dl(i){return i>0?1:i<0?-1:0}function B1(i,t){let e=i;do{if(e.i!==i.i&&e.next.i!==i.i&&e.i!==t.i&&e.next.i!==t.i&&Kg(e,e.next,i,t))return!0;e=e.next}while(e!==i);return!1}function ea(i,t){return $e(i.prev,i,i.next)<0?$e(i,t,i.next)>=0&&$e(i,i.prev,t)>=0:$e(i,t,i.prev)<0||$e(i,i.next,t)<0}function z1(i,t){let e=i,n=!1,s=(i.x+t.x)/2,r=(i.y+t.y)/2;do e.y>r!=e.next.y>r&&e.next.y!==e.y&&s<(e.next.x-e.x)*(r-e.y)/(e.next.y-e.y)+e.x&&(n=!n),e=e.next;while(e!==i);return n}function jg(i,t){let e=new _d(i.i,i.x,i.y),n=new _d(t.i,t.x,t.y),s=i.next,r=t.prev;return i.next=t,t.prev=i,e.next=s,s.prev=e,n.next=e,e.prev=n,r.next=n,n.prev=r,n}function yg(i,t,e,n){let s=new _d(i,t,e);return n?(s.next=n.next,s.prev=n,n.next.prev=s,n.next=s):(s.prev=s,s.next=s),s}function na(i){i.next.prev=i.prev,i.prev.next=i.next,i.prevZ&&(i.prevZ.nextZ=i.nextZ),i.nextZ&&(i.nextZ.prevZ=i.prevZ)}function _d(i,t,e){this.i=i,this.x=t,this.y=e,this.prev=null,this.next=null,this.z=0,this.prevZ=null,this.nextZ=null,this.steiner=!1}function k1(i,t,e,n){let s=0;for(let r=t,o=e-n;r<e;r+=n)s+=(i[o]-i[r])*(i[r+1]+i[o+1]),o=r;return s}var Ls=class i{static area(t){let e=t.length,n=0;for(let s=e-1,r=0;r<e;s=r++)n+=t[s].x*t[r].y-t[r].x*t[s].y;return n*.5}static isClockWise(t){return i.area(t)<0}static triangulateShape(t,e){let n=[],s=[],r=[];vg(t),Mg(n,t);let o=t.length;e.forEach(vg);for(let l=0;l<e.length;l++)s.push(o),o+=e[l].length,Mg(n,e[l]);let a=w1.triangulate(n,s);for(let l=0;l<a.length;l+=3)r.push(a.slice(l,l+3));return r}};function vg(i){let t=i.length;t>2&&i[t-1].equals(i[0])&&i.pop()}function Mg(i,t){for(let e=0;e<t.length;e++)i.push(t[e].x),i.push(t[e].y)}var Xl=class i extends we{constructor(t=new Ns([new gt(.5,.5),new gt(-.5,.5),new gt(-.5,-.5),new gt(.5,-.5)]),e={}){super(),this.type="ExtrudeGeometry",this.parameters={shapes:t,options:e},t=Array.isArray(t)?t:[t];let n=this,s=[],r=[];for(let a=0,l=t.length;a<l;a++){let c=t[a];o(c)}this.setAttribute("position",new ee(s,3)),this.setAttribute("uv",new ee(r,2)),this.computeVertexNormals();function o(a){let l=[],c=e.curveSegments!==void 0?e.curveSegments:12,u=e.steps!==void 0?e.steps:1,d=e.depth!==void 0?e.depth:1,h=e.bevelEnabled!==void 0?e.bevelEnabled:!0,f=e.bevelThickness!==void 0?e.bevelThickness:.2,g=e.bevelSize!==void 0?e.bevelSize:f-.1,_=e.bevelOffset!==void 0?e.bevelOffset:0,m=e.bevelSegments!==void 0?e.bevelSegments:3,p=e.extrudePath,b=e.UVGenerator!==void 0?e.UVGenerator:V1,y,v=!1,N,P,R,F;p&&(y=p.getSpacedPoints(u),v=!0,h=!1,N=p.computeFrenetFrames(u,!1),P=new D,R=new D,F=new D),h||(m=0,f=0,g=0,_=0);let E=a.extractPoints(c),M=E.shape,A=E.holes;if(!Ls.isClockWise(M)){M=M.reverse();for(let st=0,mt=A.length;st<mt;st++){let U=A[st];Ls.isClockWise(U)&&(A[st]=U.reverse())}}let G=Ls.triangulateShape(M,A),X=M;for(let st=0,mt=A.length;st<mt;st++){let U=A[st];M=M.concat(U)}function Z(st,mt,U){return mt||console.error("THREE.ExtrudeGeometry: vec does not exist"),st.clone().addScaledVector(mt,U)}let Y=M.length,nt=G.length;function Q(st,mt,U){let Vt,ut,Tt,xt=st.x-mt.x,Jt=st.y-mt.y,bt=U.x-st.x,C=U.y-st.y,S=xt*xt+Jt*Jt,O=xt*C-Jt*bt;if(Math.abs(O)>Number.EPSILON){let tt=Math.sqrt(S),j=Math.sqrt(bt*bt+C*C),et=mt.x-Jt/tt,Nt=mt.y+xt/tt,Mt=U.x-C/j,At=U.y+bt/j,Kt=((Mt-et)*C-(At-Nt)*bt)/(xt*C-Jt*bt);Vt=et+xt*Kt-st.x,ut=Nt+Jt*Kt-st.y;let ct=Vt*Vt+ut*ut;if(ct<=2)return new gt(Vt,ut);Tt=Math.sqrt(ct/2)}else{let tt=!1;xt>Number.EPSILON?bt>Number.EPSILON&&(tt=!0):xt<-Number.EPSILON?bt<-Number.EPSILON&&(tt=!0):Math.sign(Jt)===Math.sign(C)&&(tt=!0),tt?(Vt=-Jt,ut=xt,Tt=Math.sqrt(S)):(Vt=xt,ut=Jt,Tt=Math.sqrt(S/2))}return new gt(Vt/Tt,ut/Tt)}let ft=[];for(let st=0,mt=X.length,U=mt-1,Vt=st+1;st<mt;st++,U++,Vt++)U===mt&&(U=0),Vt===mt&&(Vt=0),ft[st]=Q(X[st],X[U],X[Vt]);let at=[],_t,pt=ft.concat();for(let st=0,mt=A.length;st<mt;st++){let U=A[st];_t=[];for(let Vt=0,ut=U.length,Tt=ut-1,xt=Vt+1;Vt<ut;Vt++,Tt++,xt++)Tt===ut&&(Tt=0),xt===ut&&(xt=0),_t[Vt]=Q(U[Vt],U[Tt],U[xt]);at.push(_t),pt=pt.concat(_t)}for(let st=0;st<m;st++){let mt=st/m,U=f*Math.cos(mt*Math.PI/2),Vt=g*Math.sin(mt*Math.PI/2)+_;for(let ut=0,Tt=X.length;ut<Tt;ut++){let xt=Z(X[ut],ft[ut],Vt);lt(xt.x,xt.y,-U)}for(let ut=0,Tt=A.length;ut<Tt;ut++){let xt=A[ut];_t=at[ut];for(let Jt=0,bt=xt.length;Jt<bt;Jt++){let C=Z(xt[Jt],_t[Jt],Vt);lt(C.x,C.y,-U)}}}let Zt=g+_;for(let st=0;st<Y;st++){let mt=h?Z(M[st],pt[st],Zt):M[st];v?(R.copy(N.normals[0]).multiplyScalar(mt.x),P.copy(N.binormals[0]).multiplyScalar(mt.y),F.copy(y[0]).add(R).add(P),lt(F.x,F.y,F.z)):lt(mt.x,mt.y,0)}for(let st=1;st<=u;st++)for(let mt=0;mt<Y;mt++){let U=h?Z(M[mt],pt[mt],Zt):M[mt];v?(R.copy(N.normals[st]).multiplyScalar(U.x),P.copy(N.binormals[st]).multiplyScalar(U.y),F.copy(y[st]).add(R).add(P),lt(F.x,F.y,F.z)):lt(U.x,U.y,d/u*st)}for(let st=m-1;st>=0;st--){let mt=st/m,U=f*Math.cos(mt*Math.PI/2),Vt=g*Math.sin(mt*Math.PI/2)+_;for(let ut=0,Tt=X.length;ut<Tt;ut++){let xt=Z(X[ut],ft[ut],Vt);lt(xt.x,xt.y,d+U)}for(let ut=0,Tt=A.length;ut<Tt;ut++){let xt=A[ut];_t=at[ut];for(let Jt=0,bt=xt.length;Jt<bt;Jt++){let C=Z(xt[Jt],_t[Jt],Vt);v?lt(C.x,C.y+y[u-1].y,y[u-1].x+U):lt(C.x,C.y,d+U)}}}J(),ht();function J(){let st=s.length/3;if(h){let mt=0,U=Y*mt;for(let Vt=0;Vt<nt;Vt++){let ut=G[Vt];Ft(ut[2]+U,ut[1]+U,ut[0]+U)}mt=u+m*2,U=Y*mt;for(let Vt=0;Vt<nt;Vt++){let ut=G[Vt];Ft(ut[0]+U,ut[1]+U,ut[2]+U)}}else{for(let mt=0;mt<nt;mt++){let U=G[mt];Ft(U[2],U[1],U[0])}for(let mt=0;mt<nt;mt++){let U=G[mt];Ft(U[0]+Y*u,U[1]+Y*u,U[2]+Y*u)}}n.addGroup(st,s.length/3-st,0)}function ht(){let st=s.length/3,mt=0;Ot(X,mt),mt+=X.length;for(let U=0,Vt=A.length;U<Vt;U++){let ut=A[U];Ot(ut,mt),mt+=ut.length}n.addGroup(st,s.length/3-st,1)}function Ot(st,mt){let U=st.length;for(;--U>=0;){let Vt=U,ut=U-1;ut<0&&(ut=st.length-1);for(let Tt=0,xt=u+m*2;Tt<xt;Tt++){let Jt=Y*Tt,bt=Y*(Tt+1),C=mt+Vt+Jt,S=mt+ut+Jt,O=mt+ut+bt,tt=mt+Vt+bt;Yt(C,S,O,tt)}}}function lt(st,mt,U){l.push(st),l.push(mt),l.push(U)}function Ft(st,mt,U){Ut(st),Ut(mt),Ut(U);let Vt=s.length/3,ut=b.generateTopUV(n,s,Vt-3,Vt-2,Vt-1);Qt(ut[0]),Qt(ut[1]),Qt(ut[2])}function Yt(st,mt,U,Vt){Ut(st),Ut(mt),Ut(Vt),Ut(mt),Ut(U),Ut(Vt);let ut=s.length/3,Tt=b.generateSideWallUV(n,s,ut-6,ut-3,ut-2,ut-1);Qt(Tt[0]),Qt(Tt[1]),Qt(Tt[3]),Qt(Tt[1]),Qt(Tt[2]),Qt(Tt[3])}function Ut(st){s.push(l[st*3+0]),s.push(l[st*3+1]),s.push(l[st*3+2])}function Qt(st){r.push(st.x),r.push(st.y)}}}copy(t){return super.copy(t),this.parameters=Object.assign({},t.parameters),this}toJSON(){let t=super.toJSON(),e=this.parameters.shapes,n=this.parameters.options;return H1(e,n,t)}static fromJSON(t,e){let n=[];for(let r=0,o=t.shapes.length;r<o;r++){let a=e[t.shapes[r]];n.push(a)}let s=t.options.extrudePath;return s!==void 0&&(t.options.extrudePath=new fd[s.type]().fromJSON(s)),new i(n,t.options)}},V1={generateTopUV:function(i,t,e,n,s){let r=t[e*3],o=t[e*3+1],a=t[n*3],l=t[n*3+1],c=t[s*3],u=t[s*3+1];return[new gt(r,o),new gt(a,l),new gt(c,u)]},generateSideWallUV:function(i,t,e,n,s,r){let o=t[e*3],a=t[e*3+1],l=t[e*3+2],c=t[n*3],u=t[n*3+1],d=t[n*3+2],h=t[s*3],f=t[s*3+1],g=t[s*3+2],_=t[r*3],m=t[r*3+1],p=t[r*3+2];return Math.abs(a-u)<Math.abs(o-c)?[new gt(o,1-l),new gt(c,1-d),new gt(h,1-g),new gt(_,1-p)]:[new gt(a,1-l),new gt(u,1-d),new gt(f,1-g),new gt(m,1-p)]}};function H1(i,t,e){if(e.shapes=[],Array.isArray(i))for(let n=0,s=i.length;n<s;n++){let r=i[n];e.shapes.push(r.uuid)}else e.shapes.push(i.uuid);return e.options=Object.assign({},t),t.extrudePath!==void 0&&(e.options.extrudePath=t.extrudePath.toJSON()),e}var ql=class i extends md{constructor(t=1,e=0){let n=(1+Math.sqrt(5))/2,s=[-1,n,0,1,n,0,-1,-n,0,1,-n,0,0,-1,n,0,1,n,0,-1,-n,0,1,-n,n,0,-1,n,0,1,-n,0,-1,-n,0,1],r=[0,11,5,0,5,1,0,1,7,0,7,10,0,10,11,1,5,9,5,11,4,11,10,2,10,7,6,7,1,8,3,9,4,3,4,2,3,2,6,3,6,8,3,8,9,4,9,5,2,4,11,6,2,10,8,6,7,9,8,1];super(s,r,t,e),this.type="IcosahedronGeometry",this.parameters={radius:t,detail:e}}static fromJSON(t){return new i(t.radius,t.detail)}};var Yl=class i extends we{constructor(t=new Ns([new gt(0,.5),new gt(-.5,-.5),new gt(.5,-.5)]),e=12){super(),this.type="ShapeGeometry",this.parameters={shapes:t,curveSegments:e};let n=[],s=[],r=[],o=[],a=0,l=0;if(Array.isArray(t)===!1)c(t);else for(let u=0;u<t.length;u++)c(t[u]),this.addGroup(a,l,u),a+=l,l=0;this.setIndex(n),this.setAttribute("position",new ee(s,3)),this.setAttribute("normal",new ee(r,3)),this.setAttribute("uv",new ee(o,2));function c(u){let d=s.length/3,h=u.extractPoints(e),f=h.shape,g=h.holes;Ls.isClockWise(f)===!1&&(f=f.reverse());for(let m=0,p=g.length;m<p;m++){let b=g[m];Ls.isClockWise(b)===!0&&(g[m]=b.reverse())}let _=Ls.triangulateShape(f,g);for(let m=0,p=g.length;m<p;m++){let b=g[m];f=f.concat(b)}for(let m=0,p=f.length;m<p;m++){let b=f[m];s.push(b.x,b.y,0),r.push(0,0,1),o.push(b.x,b.y)}for(let m=0,p=_.length;m<p;m++){let b=_[m],y=b[0]+d,v=b[1]+d,N=b[2]+d;n.push(y,v,N),l+=3}}}copy(t){return super.copy(t),this.parameters=Object.assign({},t.parameters),this}toJSON(){let t=super.toJSON(),e=this.parameters.shapes;return G1(e,t)}static fromJSON(t,e){let n=[];for(let s=0,r=t.shapes.length;s<r;s++){let o=e[t.shapes[s]];n.push(o)}return new i(n,t.curveSegments)}};function G1(i,t){if(t.shapes=[],Array.isArray(i))for(let e=0,n=i.length;e<n;e++){let s=i[e];t.shapes.push(s.uuid)}else t.shapes.push(i.uuid);return t}var po=class i extends we{constructor(t=1,e=32,n=16,s=0,r=Math.PI*2,o=0,a=Math.PI){super(),this.type="SphereGeometry",this.parameters={radius:t,widthSegments:e,heightSegments:n,phiStart:s,phiLength:r,thetaStart:o,thetaLength:a},e=Math.max(3,Math.floor(e)),n=Math.max(2,Math.floor(n));let l=Math.min(o+a,Math.PI),c=0,u=[],d=new D,h=new D,f=[],g=[],_=[],m=[];for(let p=0;p<=n;p++){let b=[],y=p/n,v=0;p===0&&o===0?v=.5/e:p===n&&l===Math.PI&&(v=-.5/e);for(let N=0;N<=e;N++){let P=N/e;d.x=-t*Math.cos(s+P*r)*Math.sin(o+y*a),d.y=t*Math.cos(o+y*a),d.z=t*Math.sin(s+P*r)*Math.sin(o+y*a),g.push(d.x,d.y,d.z),h.copy(d).normalize(),_.push(h.x,h.y,h.z),m.push(P+v,1-y),b.push(c++)}u.push(b)}for(let p=0;p<n;p++)for(let b=0;b<e;b++){let y=u[p][b+1],v=u[p][b],N=u[p+1][b],P=u[p+1][b+1];(p!==0||o>0)&&f.push(y,v,P),(p!==n-1||l<Math.PI)&&f.push(v,N,P)}this.setIndex(f),this.setAttribute("position",new ee(g,3)),this.setAttribute("normal",new ee(_,3)),this.setAttribute("uv",new ee(m,2))}copy(t){return super.copy(t),this.parameters=Object.assign({},t.parameters),this}static fromJSON(t){return new i(t.radius,t.widthSegments,t.heightSegments,t.phiStart,t.phiLength,t.thetaStart,t.thetaLength)}};var $l=class extends we{constructor(t=null){if(super(),this.type="WireframeGeometry",this.parameters={geometry:t},t!==null){let e=[],n=new Set,s=new D,r=new D;if(t.index!==null){let o=t.attributes.position,a=t.index,l=t.groups;l.length===0&&(l=[{start:0,count:a.count,materialIndex:0}]);for(let c=0,u=l.length;c<u;++c){let d=l[c],h=d.start,f=d.count;for(let g=h,_=h+f;g<_;g+=3)for(let m=0;m<3;m++){let p=a.getX(g+m),b=a.getX(g+(m+1)%3);s.fromBufferAttribute(o,p),r.fromBufferAttribute(o,b),Sg(s,r,n)===!0&&(e.push(s.x,s.y,s.z),e.push(r.x,r.y,r.z))}}}else{let o=t.attributes.position;for(let a=0,l=o.count/3;a<l;a++)for(let c=0;c<3;c++){let u=3*a+c,d=3*a+(c+1)%3;s.fromBufferAttribute(o,u),r.fromBufferAttribute(o,d),Sg(s,r,n)===!0&&(e.push(s.x,s.y,s.z),e.push(r.x,r.y,r.z))}}this.setAttribute("position",new ee(e,3))}}copy(t){return super.copy(t),this.parameters=Object.assign({},t.parameters),this}};function Sg(i,t,e){let n=`${i.x},${i.y},${i.z}-${t.x},${t.y},${t.z}`,s=`${t.x},${t.y},${t.z}-${i.x},${i.y},${i.z}`;return e.has(n)===!0||e.has(s)===!0?!1:(e.add(n),e.add(s),!0)}var Zl=class extends Us{static get type(){return"MeshLambertMaterial"}constructor(t){super(),this.isMeshLambertMaterial=!0,this.color=new oe(16777215),this.map=null,this.lightMap=null,this.lightMapIntensity=1,this.aoMap=null,this.aoMapIntensity=1,this.emissive=new oe(0),this.emissiveIntensity=1,this.emissiveMap=null,this.bumpMap=null,this.bumpScale=1,this.normalMap=null,this.normalMapType=Bg,this.normalScale=new gt(1,1),this.displacementMap=null,this.displacementScale=1,this.displacementBias=0,this.specularMap=null,this.alphaMap=null,this.envMap=null,this.envMapRotation=new ki,this.combine=Id,this.reflectivity=1,this.refractionRatio=.98,this.wireframe=!1,this.wireframeLinewidth=1,this.wireframeLinecap="round",this.wireframeLinejoin="round",this.flatShading=!1,this.fog=!0,this.setValues(t)}copy(t){return super.copy(t),this.color.copy(t.color),this.map=t.map,this.lightMap=t.lightMap,this.lightMapIntensity=t.lightMapIntensity,this.aoMap=t.aoMap,this.aoMapIntensity=t.aoMapIntensity,this.emissive.copy(t.emissive),this.emissiveMap=t.emissiveMap,this.emissiveIntensity=t.emissiveIntensity,this.bumpMap=t.bumpMap,this.bumpScale=t.bumpScale,this.normalMap=t.normalMap,this.normalMapType=t.normalMapType,this.normalScale.copy(t.normalScale),this.displacementMap=t.displacementMap,this.displacementScale=t.displacementScale,this.displacementBias=t.displacementBias,this.specularMap=t.specularMap,this.alphaMap=t.alphaMap,this.envMap=t.envMap,this.envMapRotation.copy(t.envMapRotation),this.combine=t.combine,this.reflectivity=t.reflectivity,this.refractionRatio=t.refractionRatio,this.wireframe=t.wireframe,this.wireframeLinewidth=t.wireframeLinewidth,this.wireframeLinecap=t.wireframeLinecap,this.wireframeLinejoin=t.wireframeLinejoin,this.flatShading=t.flatShading,this.fog=t.fog,this}};function fl(i,t,e){return!i||!e&&i.constructor===t?i:typeof t.BYTES_PER_ELEMENT=="number"?new t(i):Array.prototype.slice.call(i)}function W1(i){return ArrayBuffer.isView(i)&&!(i instanceof DataView)}var mo=class{constructor(t,e,n,s){this.parameterPositions=t,this._cachedIndex=0,this.resultBuffer=s!==void 0?s:new e.constructor(n),this.sampleValues=e,this.valueSize=n,this.settings=null,this.DefaultSettings_={}}evaluate(t){let e=this.parameterPositions,n=this._cachedIndex,s=e[n],r=e[n-1];n:{t:{let o;e:{i:if(!(t<s)){for(let a=n+2;;){if(s===void 0){if(t<r)break i;return n=e.length,this._cachedIndex=n,this.copySampleValue_(n-1)}if(n===a)break;if(r=s,s=e[++n],t<s)break t}o=e.length;break e}if(!(t>=r)){let a=e[1];t<a&&(n=2,r=a);for(let l=n-2;;){if(r===void 0)return this._cachedIndex=0,this.copySampleValue_(0);if(n===l)break;if(s=r,r=e[--n-1],t>=r)break t}o=n,n=0;break e}break n}for(;n<o;){let a=n+o>>>1;t<e[a]?o=a:n=a+1}if(s=e[n],r=e[n-1],r===void 0)return this._cachedIndex=0,this.copySampleValue_(0);if(s===void 0)return n=e.length,this._cachedIndex=n,this.copySampleValue_(n-1)}this._cachedIndex=n,this.intervalChanged_(n,r,s)}return this.interpolate_(n,r,t,s)}getSettings_(){return this.settings||this.DefaultSettings_}copySampleValue_(t){let e=this.resultBuffer,n=this.sampleValues,s=this.valueSize,r=t*s;for(let o=0;o!==s;++o)e[o]=n[r+o];return e}interpolate_(){throw new Error("call to abstract method")}intervalChanged_(){}},xd=class extends mo{constructor(t,e,n,s){super(t,e,n,s),this._weightPrev=-0,this._offsetPrev=-0,this._weightNext=-0,this._offsetNext=-0,this.DefaultSettings_={endingStart:xm,endingEnd:xm}}intervalChanged_(t,e,n){let s=this.parameterPositions,r=t-2,o=t+1,a=s[r],l=s[o];if(a===void 0)switch(this.getSettings_().endingStart){case ym:r=t,a=2*e-n;break;case vm:r=s.length-2,a=e+s[r]-s[r+1];break;default:r=t,a=n}if(l===void 0)switch(this.getSettings_().endingEnd){case ym:o=t,l=2*n-e;break;case vm:o=1,l=n+s[1]-s[0];break;default:o=t-1,l=e}let c=(n-e)*.5,u=this.valueSize;this._weightPrev=c/(e-a),this._weightNext=c/(l-n),this._offsetPrev=r*u,this._offsetNext=o*u}interpolate_(t,e,n,s){let r=this.resultBuffer,o=this.sampleValues,a=this.valueSize,l=t*a,c=l-a,u=this._offsetPrev,d=this._offsetNext,h=this._weightPrev,f=this._weightNext,g=(n-e)/(s-e),_=g*g,m=_*g,p=-h*m+2*h*_-h*g,b=(1+h)*m+(-1.5-2*h)*_+(-.5+h)*g+1,y=(-1-f)*m+(1.5+f)*_+.5*g,v=f*m-f*_;for(let N=0;N!==a;++N)r[N]=p*o[u+N]+b*o[c+N]+y*o[l+N]+v*o[d+N];return r}},yd=class extends mo{constructor(t,e,n,s){super(t,e,n,s)}interpolate_(t,e,n,s){let r=this.resultBuffer,o=this.sampleValues,a=this.valueSize,l=t*a,c=l-a,u=(n-e)/(s-e),d=1-u;for(let h=0;h!==a;++h)r[h]=o[c+h]*d+o[l+h]*u;return r}},vd=class extends mo{constructor(t,e,n,s){super(t,e,n,s)}interpolate_(t){return this.copySampleValue_(t-1)}},Ei=class{constructor(t,e,n,s){if(t===void 0)throw new Error("THREE.KeyframeTrack: track name is undefined");if(e===void 0||e.length===0)throw new Error("THREE.KeyframeTrack: no keyframes in track named "+t);this.name=t,this.times=fl(e,this.TimeBufferType),this.values=fl(n,this.ValueBufferType),this.setInterpolation(s||this.DefaultInterpolation)}static toJSON(t){let e=t.constructor,n;if(e.toJSON!==this.toJSON)n=e.toJSON(t);else{n={name:t.name,times:fl(t.times,Array),values:fl(t.values,Array)};let s=t.getInterpolation();s!==t.DefaultInterpolation&&(n.interpolation=s)}return n.type=t.ValueTypeName,n}InterpolantFactoryMethodDiscrete(t){return new vd(this.times,this.values,this.getValueSize(),t)}InterpolantFactoryMethodLinear(t){return new yd(this.times,this.values,this.getValueSize(),t)}InterpolantFactoryMethodSmooth(t){return new xd(this.times,this.values,this.getValueSize(),t)}setInterpolation(t){let e;switch(t){case vl:e=this.InterpolantFactoryMethodDiscrete;break;case Gu:e=this.InterpolantFactoryMethodLinear;break;case Eh:e=this.InterpolantFactoryMethodSmooth;break}if(e===void 0){let n="unsupported interpolation for "+this.ValueTypeName+" keyframe track named "+this.name;if(this.createInterpolant===void 0)if(t!==this.DefaultInterpolation)this.setInterpolation(this.DefaultInterpolation);else throw new Error(n);return console.warn("THREE.KeyframeTrack:",n),this}return this.createInterpolant=e,this}getInterpolation(){switch(this.createInterpolant){case this.InterpolantFactoryMethodDiscrete:return vl;case this.InterpolantFactoryMethodLinear:return Gu;case this.InterpolantFactoryMethodSmooth:return Eh}}getValueSize(){return this.values.length/this.times.length}shift(t){if(t!==0){let e=this.times;for(let n=0,s=e.length;n!==s;++n)e[n]+=t}return this}scale(t){if(t!==1){let e=this.times;for(let n=0,s=e.length;n!==s;++n)e[n]*=t}return this}trim(t,e){let n=this.times,s=n.length,r=0,o=s-1;for(;r!==s&&n[r]<t;)++r;for(;o!==-1&&n[o]>e;)--o;if(++o,r!==0||o!==s){r>=o&&(o=Math.max(o,1),r=o-1);let a=this.getValueSize();this.times=n.slice(r,o),this.values=this.values.slice(r*a,o*a)}return this}validate(){let t=!0,e=this.getValueSize();e-Math.floor(e)!==0&&(console.error("THREE.KeyframeTrack: Invalid value size in track.",this),t=!1);let n=this.times,s=this.values,r=n.length;r===0&&(console.error("THREE.KeyframeTrack: Track is empty.",this),t=!1);let o=null;for(let a=0;a!==r;a++){let l=n[a];if(typeof l=="number"&&isNaN(l)){console.error("THREE.KeyframeTrack: Time is not a valid number.",this,a,l),t=!1;break}if(o!==null&&o>l){console.error("THREE.KeyframeTrack: Out of order keys.",this,a,l,o),t=!1;break}o=l}if(s!==void 0&&W1(s))for(let a=0,l=s.length;a!==l;++a){let c=s[a];if(isNaN(c)){console.error("THREE.KeyframeTrack: Value is not a valid number.",this,a,c),t=!1;break}}return t}optimize(){let t=this.times.slice(),e=this.values.slice(),n=this.getValueSize(),s=this.getInterpolation()===Eh,r=t.length-1,o=1;for(let a=1;a<r;++a){let l=!1,c=t[a],u=t[a+1];if(c!==u&&(a!==1||c!==t[0]))if(s)l=!0;else{let d=a*n,h=d-n,f=d+n;for(let g=0;g!==n;++g){let _=e[d+g];if(_!==e[h+g]||_!==e[f+g]){l=!0;break}}}if(l){if(a!==o){t[o]=t[a];let d=a*n,h=o*n;for(let f=0;f!==n;++f)e[h+f]=e[d+f]}++o}}if(r>0){t[o]=t[r];for(let a=r*n,l=o*n,c=0;c!==n;++c)e[l+c]=e[a+c];++o}return o!==t.length?(this.times=t.slice(0,o),this.values=e.slice(0,o*n)):(this.times=t,this.values=e),this}clone(){let t=this.times.slice(),e=this.values.slice(),n=this.constructor,s=new n(this.name,t,e);return s.createInterpolant=this.createInterpolant,s}};Ei.prototype.TimeBufferType=Float32Array;Ei.prototype.ValueBufferType=Float32Array;Ei.prototype.DefaultInterpolation=Gu;var cr=class extends Ei{constructor(t,e,n){super(t,e,n)}};cr.prototype.ValueTypeName="bool";cr.prototype.ValueBufferType=Array;cr.prototype.DefaultInterpolation=vl;cr.prototype.InterpolantFactoryMethodLinear=void 0;cr.prototype.InterpolantFactoryMethodSmooth=void 0;var Md=class extends Ei{};Md.prototype.ValueTypeName="color";var Sd=class extends Ei{};Sd.prototype.ValueTypeName="number";var bd=class extends mo{constructor(t,e,n,s){super(t,e,n,s)}interpolate_(t,e,n,s){let r=this.resultBuffer,o=this.sampleValues,a=this.valueSize,l=(n-e)/(s-e),c=t*a;for(let u=c+a;c!==u;c+=4)kn.slerpFlat(r,0,o,c-a,o,c,l);return r}},Jl=class extends Ei{InterpolantFactoryMethodLinear(t){return new bd(this.times,this.values,this.getValueSize(),t)}};Jl.prototype.ValueTypeName="quaternion";Jl.prototype.InterpolantFactoryMethodSmooth=void 0;var hr=class extends Ei{constructor(t,e,n){super(t,e,n)}};hr.prototype.ValueTypeName="string";hr.prototype.ValueBufferType=Array;hr.prototype.DefaultInterpolation=vl;hr.prototype.InterpolantFactoryMethodLinear=void 0;hr.prototype.InterpolantFactoryMethodSmooth=void 0;var wd=class extends Ei{};wd.prototype.ValueTypeName="vector";var Ed=class{constructor(t,e,n){let s=this,r=!1,o=0,a=0,l,c=[];this.onStart=void 0,this.onLoad=t,this.onProgress=e,this.onError=n,this.itemStart=function(u){a++,r===!1&&s.onStart!==void 0&&s.onStart(u,o,a),r=!0},this.itemEnd=function(u){o++,s.onProgress!==void 0&&s.onProgress(u,o,a),o===a&&(r=!1,s.onLoad!==void 0&&s.onLoad())},this.itemError=function(u){s.onError!==void 0&&s.onError(u)},this.resolveURL=function(u){return l?l(u):u},this.setURLModifier=function(u){return l=u,this},this.addHandler=function(u,d){return c.push(u,d),this},this.removeHandler=function(u){let d=c.indexOf(u);return d!==-1&&c.splice(d,2),this},this.getHandler=function(u){for(let d=0,h=c.length;d<h;d+=2){let f=c[d],g=c[d+1];if(f.global&&(f.lastIndex=0),f.test(u))return g}return null}}},X1=new Ed,Td=class{constructor(t){this.manager=t!==void 0?t:X1,this.crossOrigin="anonymous",this.withCredentials=!1,this.path="",this.resourcePath="",this.requestHeader={}}load(){}loadAsync(t,e){let n=this;return new Promise(function(s,r){n.load(t,s,e,r)})}parse(){}setCrossOrigin(t){return this.crossOrigin=t,this}setWithCredentials(t){return this.withCredentials=t,this}setPath(t){return this.path=t,this}setResourcePath(t){return this.resourcePath=t,this}setRequestHeader(t){return this.requestHeader=t,this}};Td.DEFAULT_MATERIAL_NAME="__DEFAULT";var Kl=class extends Tn{constructor(t,e=1){super(),this.isLight=!0,this.type="Light",this.color=new oe(t),this.intensity=e}dispose(){}copy(t,e){return super.copy(t,e),this.color.copy(t.color),this.intensity=t.intensity,this}toJSON(t){let e=super.toJSON(t);return e.object.color=this.color.getHex(),e.object.intensity=this.intensity,this.groundColor!==void 0&&(e.object.groundColor=this.groundColor.getHex()),this.distance!==void 0&&(e.object.distance=this.distance),this.angle!==void 0&&(e.object.angle=this.angle),this.decay!==void 0&&(e.object.decay=this.decay),this.penumbra!==void 0&&(e.object.penumbra=this.penumbra),this.shadow!==void 0&&(e.object.shadow=this.shadow.toJSON()),this.target!==void 0&&(e.object.target=this.target.uuid),e}},jl=class extends Kl{constructor(t,e,n){super(t,n),this.isHemisphereLight=!0,this.type="HemisphereLight",this.position.copy(Tn.DEFAULT_UP),this.updateMatrix(),this.groundColor=new oe(e)}copy(t,e){return super.copy(t,e),this.groundColor.copy(t.groundColor),this}},iu=new Ge,bg=new D,wg=new D,Ad=class{constructor(t){this.camera=t,this.intensity=1,this.bias=0,this.normalBias=0,this.radius=1,this.blurSamples=8,this.mapSize=new gt(512,512),this.map=null,this.mapPass=null,this.matrix=new Ge,this.autoUpdate=!0,this.needsUpdate=!1,this._frustum=new Ko,this._frameExtents=new gt(1,1),this._viewportCount=1,this._viewports=[new De(0,0,1,1)]}getViewportCount(){return this._viewportCount}getFrustum(){return this._frustum}updateMatrices(t){let e=this.camera,n=this.matrix;bg.setFromMatrixPosition(t.matrixWorld),e.position.copy(bg),wg.setFromMatrixPosition(t.target.matrixWorld),e.lookAt(wg),e.updateMatrixWorld(),iu.multiplyMatrices(e.projectionMatrix,e.matrixWorldInverse),this._frustum.setFromProjectionMatrix(iu),n.set(.5,0,0,.5,0,.5,0,.5,0,0,.5,.5,0,0,0,1),n.multiply(iu)}getViewport(t){return this._viewports[t]}getFrameExtents(){return this._frameExtents}dispose(){this.map&&this.map.dispose(),this.mapPass&&this.mapPass.dispose()}copy(t){return this.camera=t.camera.clone(),this.intensity=t.intensity,this.bias=t.bias,this.radius=t.radius,this.mapSize.copy(t.mapSize),this}clone(){return new this.constructor().copy(this)}toJSON(){let t={};return this.intensity!==1&&(t.intensity=this.intensity),this.bias!==0&&(t.bias=this.bias),this.normalBias!==0&&(t.normalBias=this.normalBias),this.radius!==1&&(t.radius=this.radius),(this.mapSize.x!==512||this.mapSize.y!==512)&&(t.mapSize=this.mapSize.toArray()),t.camera=this.camera.toJSON(!1).object,delete t.camera.matrix,t}};var Cd=class extends Ad{constructor(){super(new fo(-5,5,5,-5,.5,500)),this.isDirectionalLightShadow=!0}},Ql=class extends Kl{constructor(t,e){super(t,e),this.isDirectionalLight=!0,this.type="DirectionalLight",this.position.copy(Tn.DEFAULT_UP),this.updateMatrix(),this.target=new Tn,this.shadow=new Cd}dispose(){this.shadow.dispose()}copy(t){return super.copy(t),this.target=t.target.clone(),this.shadow=t.shadow.clone(),this}};var tc=class extends we{constructor(){super(),this.isInstancedBufferGeometry=!0,this.type="InstancedBufferGeometry",this.instanceCount=1/0}copy(t){return super.copy(t),this.instanceCount=t.instanceCount,this}toJSON(){let t=super.toJSON();return t.instanceCount=this.instanceCount,t.isInstancedBufferGeometry=!0,t}};var Vd="\\[\\]\\.:\\/",q1=new RegExp("["+Vd+"]","g"),Hd="[^"+Vd+"]",Y1="[^"+Vd.replace("\\.","")+"]",$1=/((?:WC+[\/:])*)/.source.replace("WC",Hd),Z1=/(WCOD+)?/.source.replace("WCOD",Y1),J1=/(?:\.(WC+)(?:\[(.+)\])?)?/.source.replace("WC",Hd),K1=/\.(WC+)(?:\[(.+)\])?/.source.replace("WC",Hd),j1=new RegExp("^"+$1+Z1+J1+K1+"$"),Q1=["material","materials","bones","map"],Rd=class{constructor(t,e,n){let s=n||qe.parseTrackName(e);this._targetGroup=t,this._bindings=t.subscribe_(e,s)}getValue(t,e){this.bind();let n=this._targetGroup.nCachedObjects_,s=this._bindings[n];s!==void 0&&s.getValue(t,e)}setValue(t,e){let n=this._bindings;for(let s=this._targetGroup.nCachedObjects_,r=n.length;s!==r;++s)n[s].setValue(t,e)}bind(){let t=this._bindings;for(let e=this._targetGroup.nCachedObjects_,n=t.length;e!==n;++e)t[e].bind()}unbind(){let t=this._bindings;for(let e=this._targetGroup.nCachedObjects_,n=t.length;e!==n;++e)t[e].unbind()}},qe=class i{constructor(t,e,n){this.path=e,this.parsedPath=n||i.parseTrackName(e),this.node=i.findNode(t,this.parsedPath.nodeName),this.rootNode=t,this.getValue=this._getValue_unbound,this.setValue=this._setValue_unbound}static create(t,e,n){return t&&t.isAnimationObjectGroup?new i.Composite(t,e,n):new i(t,e,n)}static sanitizeNodeName(t){return t.replace(/\s/g,"_").replace(q1,"")}static parseTrackName(t){let e=j1.exec(t);if(e===null)throw new Error("PropertyBinding: Cannot parse trackName: "+t);let n={nodeName:e[2],objectName:e[3],objectIndex:e[4],propertyName:e[5],propertyIndex:e[6]},s=n.nodeName&&n.nodeName.lastIndexOf(".");if(s!==void 0&&s!==-1){let r=n.nodeName.substring(s+1);Q1.indexOf(r)!==-1&&(n.nodeName=n.nodeName.substring(0,s),n.objectName=r)}if(n.propertyName===null||n.propertyName.length===0)throw new Error("PropertyBinding: can not parse propertyName from trackName: "+t);return n}static findNode(t,e){if(e===void 0||e===""||e==="."||e===-1||e===t.name||e===t.uuid)return t;if(t.skeleton){let n=t.skeleton.getBoneByName(e);if(n!==void 0)return n}if(t.children){let n=function(r){for(let o=0;o<r.length;o++){let a=r[o];if(a.name===e||a.uuid===e)return a;let l=n(a.children);if(l)return l}return null},s=n(t.children);if(s)return s}return null}_getValue_unavailable(){}_setValue_unavailable(){}_getValue_direct(t,e){t[e]=this.targetObject[this.propertyName]}_getValue_array(t,e){let n=this.resolvedProperty;for(let s=0,r=n.length;s!==r;++s)t[e++]=n[s]}_getValue_arrayElement(t,e){t[e]=this.resolvedProperty[this.propertyIndex]}_getValue_toArray(t,e){this.resolvedProperty.toArray(t,e)}_setValue_direct(t,e){this.targetObject[this.propertyName]=t[e]}_setValue_direct_setNeedsUpdate(t,e){this.targetObject[this.propertyName]=t[e],this.targetObject.needsUpdate=!0}_setValue_direct_setMatrixWorldNeedsUpdate(t,e){this.targetObject[this.propertyName]=t[e],this.targetObject.matrixWorldNeedsUpdate=!0}_setValue_array(t,e){let n=this.resolvedProperty;for(let s=0,r=n.length;s!==r;++s)n[s]=t[e++]}_setValue_array_setNeedsUpdate(t,e){let n=this.resolvedProperty;for(let s=0,r=n.length;s!==r;++s)n[s]=t[e++];this.targetObject.needsUpdate=!0}_setValue_array_setMatrixWorldNeedsUpdate(t,e){let n=this.resolvedProperty;for(let s=0,r=n.length;s!==r;++s)n[s]=t[e++];this.targetObject.matrixWorldNeedsUpdate=!0}_setValue_arrayElement(t,e){this.resolvedProperty[this.propertyIndex]=t[e]}_setValue_arrayElement_setNeedsUpdate(t,e){this.resolvedProperty[this.propertyIndex]=t[e],this.targetObject.needsUpdate=!0}_setValue_arrayElement_setMatrixWorldNeedsUpdate(t,e){this.resolvedProperty[this.propertyIndex]=t[e],this.targetObject.matrixWorldNeedsUpdate=!0}_setValue_fromArray(t,e){this.resolvedProperty.fromArray(t,e)}_setValue_fromArray_setNeedsUpdate(t,e){this.resolvedProperty.fromArray(t,e),this.targetObject.needsUpdate=!0}_setValue_fromArray_setMatrixWorldNeedsUpdate(t,e){this.resolvedProperty.fromArray(t,e),this.targetObject.matrixWorldNeedsUpdate=!0}_getValue_unbound(t,e){this.bind(),this.getValue(t,e)}_setValue_unbound(t,e){this.bind(),this.setValue(t,e)}bind(){let t=this.node,e=this.parsedPath,n=e.objectName,s=e.propertyName,r=e.propertyIndex;if(t||(t=i.findNode(this.rootNode,e.nodeName),this.node=t),this.getValue=this._getValue_unavailable,this.setValue=this._setValue_unavailable,!t){console.warn("THREE.PropertyBinding: No target node found for track: "+this.path+".");return}if(n){let c=e.objectIndex;switch(n){case"materials":if(!t.material){console.error("THREE.PropertyBinding: Can not bind to material as node does not have a material.",this);return}if(!t.material.materials){console.error("THREE.PropertyBinding: Can not bind to material.materials as node.material does not have a materials array.",this);return}t=t.material.materials;break;case"bones":if(!t.skeleton){console.error("THREE.PropertyBinding: Can not bind to bones as node does not have a skeleton.",this);return}t=t.skeleton.bones;for(let u=0;u<t.length;u++)if(t[u].name===c){c=u;break}break;case"map":if("map"in t){t=t.map;break}if(!t.material){console.error("THREE.PropertyBinding: Can not bind to material as node does not have a material.",this);return}if(!t.material.map){console.error("THREE.PropertyBinding: Can not bind to material.map as node.material does not have a map.",this);return}t=t.material.map;break;default:if(t[n]===void 0){console.error("THREE.PropertyBinding: Can not bind to objectName of node undefined.",this);return}t=t[n]}if(c!==void 0){if(t[c]===void 0){console.error("THREE.PropertyBinding: Trying to bind to objectIndex of objectName, but is undefined.",this,t);return}t=t[c]}}let o=t[s];if(o===void 0){let c=e.nodeName;console.error("THREE.PropertyBinding: Trying to update property for track: "+c+"."+s+" but it wasn't found.",t);return}let a=this.Versioning.None;this.targetObject=t,t.needsUpdate!==void 0?a=this.Versioning.NeedsUpdate:t.matrixWorldNeedsUpdate!==void 0&&(a=this.Versioning.MatrixWorldNeedsUpdate);let l=this.BindingType.Direct;if(r!==void 0){if(s==="morphTargetInfluences"){if(!t.geometry){console.error("THREE.PropertyBinding: Can not bind to morphTargetInfluences because node does not have a geometry.",this);return}if(!t.geometry.morphAttributes){console.error("THREE.PropertyBinding: Can not bind to morphTargetInfluences because node does not have a geometry.morphAttributes.",this);return}t.morphTargetDictionary[r]!==void 0&&(r=t.morphTargetDictionary[r])}l=this.BindingType.ArrayElement,this.resolvedProperty=o,this.propertyIndex=r}else o.fromArray!==void 0&&o.toArray!==void 0?(l=this.BindingType.HasFromToArray,this.resolvedProperty=o):Array.isArray(o)?(l=this.BindingType.EntireArray,this.resolvedProperty=o):this.propertyName=s;this.getValue=this.GetterByBindingType[l],this.setValue=this.SetterByBindingTypeAndVersioning[l][a]}unbind(){this.node=null,this.getValue=this._getValue_unbound,this.setValue=this._setValue_unbound}};qe.Composite=Rd;qe.prototype.BindingType={Direct:0,EntireArray:1,ArrayElement:2,HasFromToArray:3};qe.prototype.Versioning={None:0,NeedsUpdate:1,MatrixWorldNeedsUpdate:2};qe.prototype.GetterByBindingType=[qe.prototype._getValue_direct,qe.prototype._getValue_array,qe.prototype._getValue_arrayElement,qe.prototype._getValue_toArray];qe.prototype.SetterByBindingTypeAndVersioning=[[qe.prototype._setValue_direct,qe.prototype._setValue_direct_setNeedsUpdate,qe.prototype._setValue_direct_setMatrixWorldNeedsUpdate],[qe.prototype._setValue_array,qe.prototype._setValue_array_setNeedsUpdate,qe.prototype._setValue_array_setMatrixWorldNeedsUpdate],[qe.prototype._setValue_arrayElement,qe.prototype._setValue_arrayElement_setNeedsUpdate,qe.prototype._setValue_arrayElement_setMatrixWorldNeedsUpdate],[qe.prototype._setValue_fromArray,qe.prototype._setValue_fromArray_setNeedsUpdate,qe.prototype._setValue_fromArray_setMatrixWorldNeedsUpdate]];var gT=new Float32Array(1);var ur=class extends ad{constructor(t,e,n=1){super(t,e),this.isInstancedInterleavedBuffer=!0,this.meshPerAttribute=n}copy(t){return super.copy(t),this.meshPerAttribute=t.meshPerAttribute,this}clone(t){let e=super.clone(t);return e.meshPerAttribute=this.meshPerAttribute,e}toJSON(t){let e=super.toJSON(t);return e.isInstancedInterleavedBuffer=!0,e.meshPerAttribute=this.meshPerAttribute,e}};var ia=class{constructor(t=1,e=0,n=0){return this.radius=t,this.phi=e,this.theta=n,this}set(t,e,n){return this.radius=t,this.phi=e,this.theta=n,this}copy(t){return this.radius=t.radius,this.phi=t.phi,this.theta=t.theta,this}makeSafe(){return this.phi=Math.max(1e-6,Math.min(Math.PI-1e-6,this.phi)),this}setFromVector3(t){return this.setFromCartesianCoords(t.x,t.y,t.z)}setFromCartesianCoords(t,e,n){return this.radius=Math.sqrt(t*t+e*e+n*n),this.radius===0?(this.theta=0,this.phi=0):(this.theta=Math.atan2(t,n),this.phi=Math.acos(on(e/this.radius,-1,1))),this}clone(){return new this.constructor().copy(this)}};var Eg=new D,pl=new D,go=class{constructor(t=new D,e=new D){this.start=t,this.end=e}set(t,e){return this.start.copy(t),this.end.copy(e),this}copy(t){return this.start.copy(t.start),this.end.copy(t.end),this}getCenter(t){return t.addVectors(this.start,this.end).multiplyScalar(.5)}delta(t){return t.subVectors(this.end,this.start)}distanceSq(){return this.start.distanceToSquared(this.end)}distance(){return this.start.distanceTo(this.end)}at(t,e){return this.delta(e).multiplyScalar(t).add(this.start)}closestPointToPointParameter(t,e){Eg.subVectors(t,this.start),pl.subVectors(this.end,this.start);let n=pl.dot(pl),r=pl.dot(Eg)/n;return e&&(r=on(r,0,1)),r}closestPointToPoint(t,e,n){let s=this.closestPointToPointParameter(t,e);return this.delta(n).multiplyScalar(s).add(this.start)}applyMatrix4(t){return this.start.applyMatrix4(t),this.end.applyMatrix4(t),this}equals(t){return t.start.equals(this.start)&&t.end.equals(this.end)}clone(){return new this.constructor().copy(this)}};var ec=class extends hs{constructor(t,e=null){super(),this.object=t,this.domElement=e,this.enabled=!0,this.state=-1,this.keys={},this.mouseButtons={LEFT:null,MIDDLE:null,RIGHT:null},this.touches={ONE:null,TWO:null}}connect(){}disconnect(){}dispose(){}update(){}};typeof __THREE_DEVTOOLS__<"u"&&__THREE_DEVTOOLS__.dispatchEvent(new CustomEvent("register",{detail:{revision:Pd}}));typeof window<"u"&&(window.__THREE__?console.warn("WARNING: Multiple instances of Three.js being imported."):window.__THREE__=Pd);var Qg={type:"change"},Wd={type:"start"},e0={type:"end"},lc=new co,t0=new Jn,tE=Math.cos(70*sc.DEG2RAD),hn=new D,Vn=2*Math.PI,Ue={NONE:-1,ROTATE:0,DOLLY:1,PAN:2,TOUCH_ROTATE:3,TOUCH_PAN:4,TOUCH_DOLLY_PAN:5,TOUCH_DOLLY_ROTATE:6},Gd=1e-6,ra=class extends ec{constructor(t,e=null){super(t,e),this.state=Ue.NONE,this.enabled=!0,this.target=new D,this.cursor=new D,this.minDistance=0,this.maxDistance=1/0,this.minZoom=0,this.maxZoom=1/0,this.minTargetRadius=0,this.maxTargetRadius=1/0,this.minPolarAngle=0,this.maxPolarAngle=Math.PI,this.minAzimuthAngle=-1/0,this.maxAzimuthAngle=1/0,this.enableDamping=!1,this.dampingFactor=.05,this.enableZoom=!0,this.zoomSpeed=1,this.enableRotate=!0,this.rotateSpeed=1,this.enablePan=!0,this.panSpeed=1,this.screenSpacePanning=!0,this.keyPanSpeed=7,this.zoomToCursor=!1,this.autoRotate=!1,this.autoRotateSpeed=2,this.keys={LEFT:"ArrowLeft",UP:"ArrowUp",RIGHT:"ArrowRight",BOTTOM:"ArrowDown"},this.mouseButtons={LEFT:Ti.ROTATE,MIDDLE:Ti.DOLLY,RIGHT:Ti.PAN},this.touches={ONE:Gi.ROTATE,TWO:Gi.DOLLY_PAN},this.target0=this.target.clone(),this.position0=this.object.position.clone(),this.zoom0=this.object.zoom,this._domElementKeyEvents=null,this._lastPosition=new D,this._lastQuaternion=new kn,this._lastTargetPosition=new D,this._quat=new kn().setFromUnitVectors(t.up,new D(0,1,0)),this._quatInverse=this._quat.clone().invert(),this._spherical=new ia,this._sphericalDelta=new ia,this._scale=1,this._panOffset=new D,this._rotateStart=new gt,this._rotateEnd=new gt,this._rotateDelta=new gt,this._panStart=new gt,this._panEnd=new gt,this._panDelta=new gt,this._dollyStart=new gt,this._dollyEnd=new gt,this._dollyDelta=new gt,this._dollyDirection=new D,this._mouse=new gt,this._performCursorZoom=!1,this._pointers=[],this._pointerPositions={},this._controlActive=!1,this._onPointerMove=nE.bind(this),this._onPointerDown=eE.bind(this),this._onPointerUp=iE.bind(this),this._onContextMenu=hE.bind(this),this._onMouseWheel=oE.bind(this),this._onKeyDown=aE.bind(this),this._onTouchStart=lE.bind(this),this._onTouchMove=cE.bind(this),this._onMouseDown=sE.bind(this),this._onMouseMove=rE.bind(this),this._interceptControlDown=uE.bind(this),this._interceptControlUp=dE.bind(this),this.domElement!==null&&this.connect(),this.update()}connect(){this.domElement.addEventListener("pointerdown",this._onPointerDown),this.domElement.addEventListener("pointercancel",this._onPointerUp),this.domElement.addEventListener("contextmenu",this._onContextMenu),this.domElement.addEventListener("wheel",this._onMouseWheel,{passive:!1}),this.domElement.getRootNode().addEventListener("keydown",this._interceptControlDown,{passive:!0,capture:!0}),this.domElement.style.touchAction="none"}disconnect(){this.domElement.removeEventListener("pointerdown",this._onPointerDown),this.domElement.removeEventListener("pointermove",this._onPointerMove),this.domElement.removeEventListener("pointerup",this._onPointerUp),this.domElement.removeEventListener("pointercancel",this._onPointerUp),this.domElement.removeEventListener("wheel",this._onMouseWheel),this.domElement.removeEventListener("contextmenu",this._onContextMenu),this.stopListenToKeyEvents(),this.domElement.getRootNode().removeEventListener("keydown",this._interceptControlDown,{capture:!0}),this.domElement.style.touchAction="auto"}dispose(){this.disconnect()}getPolarAngle(){return this._spherical.phi}getAzimuthalAngle(){return this._spherical.theta}getDistance(){return this.object.position.distanceTo(this.target)}listenToKeyEvents(t){t.addEventListener("keydown",this._onKeyDown),this._domElementKeyEvents=t}stopListenToKeyEvents(){this._domElementKeyEvents!==null&&(this._domElementKeyEvents.removeEventListener("keydown",this._onKeyDown),this._domElementKeyEvents=null)}saveState(){this.target0.copy(this.target),this.position0.copy(this.object.position),this.zoom0=this.object.zoom}reset(){this.target.copy(this.target0),this.object.position.copy(this.position0),this.object.zoom=this.zoom0,this.object.updateProjectionMatrix(),this.dispatchEvent(Qg),this.update(),this.state=Ue.NONE}update(t=null){let e=this.object.position;hn.copy(e).sub(this.target),hn.applyQuaternion(this._quat),this._spherical.setFromVector3(hn),this.autoRotate&&this.state===Ue.NONE&&this._rotateLeft(this._getAutoRotationAngle(t)),this.enableDamping?(this._spherical.theta+=this._sphericalDelta.theta*this.dampingFactor,this._spherical.phi+=this._sphericalDelta.phi*this.dampingFactor):(this._spherical.theta+=this._sphericalDelta.theta,this._spherical.phi+=this._sphericalDelta.phi);let n=this.minAzimuthAngle,s=this.maxAzimuthAngle;isFinite(n)&&isFinite(s)&&(n<-Math.PI?n+=Vn:n>Math.PI&&(n-=Vn),s<-Math.PI?s+=Vn:s>Math.PI&&(s-=Vn),n<=s?this._spherical.theta=Math.max(n,Math.min(s,this._spherical.theta)):this._spherical.theta=this._spherical.theta>(n+s)/2?Math.max(n,this._spherical.theta):Math.min(s,this._spherical.theta)),this._spherical.phi=Math.max(this.minPolarAngle,Math.min(this.maxPolarAngle,this._spherical.phi)),this._spherical.makeSafe(),this.enableDamping===!0?this.target.addScaledVector(this._panOffset,this.dampingFactor):this.target.add(this._panOffset),this.target.sub(this.cursor),this.target.clampLength(this.minTargetRadius,this.maxTargetRadius),this.target.add(this.cursor);let r=!1;if(this.zoomToCursor&&this._performCursorZoom||this.object.isOrthographicCamera)this._spherical.radius=this._clampDistance(this._spherical.radius);else{let o=this._spherical.radius;this._spherical.radius=this._clampDistance(this._spherical.radius*this._scale),r=o!=this._spherical.radius}if(hn.setFromSpherical(this._spherical),hn.applyQuaternion(this._quatInverse),e.copy(this.target).add(hn),this.object.lookAt(this.target),this.enableDamping===!0?(this._sphericalDelta.theta*=1-this.dampingFactor,this._sphericalDelta.phi*=1-this.dampingFactor,this._panOffset.multiplyScalar(1-this.dampingFactor)):(this._sphericalDelta.set(0,0,0),this._panOffset.set(0,0,0)),this.zoomToCursor&&this._performCursorZoom){let o=null;if(this.object.isPerspectiveCamera){let a=hn.length();o=this._clampDistance(a*this._scale);let l=a-o;this.object.position.addScaledVector(this._dollyDirection,l),this.object.updateMatrixWorld(),r=!!l}else if(this.object.isOrthographicCamera){let a=new D(this._mouse.x,this._mouse.y,0);a.unproject(this.object);let l=this.object.zoom;this.object.zoom=Math.max(this.minZoom,Math.min(this.maxZoom,this.object.zoom/this._scale)),this.object.updateProjectionMatrix(),r=l!==this.object.zoom;let c=new D(this._mouse.x,this._mouse.y,0);c.unproject(this.object),this.object.position.sub(c).add(a),this.object.updateMatrixWorld(),o=hn.length()}else console.warn("WARNING: OrbitControls.js encountered an unknown camera type - zoom to cursor disabled."),this.zoomToCursor=!1;o!==null&&(this.screenSpacePanning?this.target.set(0,0,-1).transformDirection(this.object.matrix).multiplyScalar(o).add(this.object.position):(lc.origin.copy(this.object.position),lc.direction.set(0,0,-1).transformDirection(this.object.matrix),Math.abs(this.object.up.dot(lc.direction))<tE?this.object.lookAt(this.target):(t0.setFromNormalAndCoplanarPoint(this.object.up,this.target),lc.intersectPlane(t0,this.target))))}else if(this.object.isOrthographicCamera){let o=this.object.zoom;this.object.zoom=Math.max(this.minZoom,Math.min(this.maxZoom,this.object.zoom/this._scale)),o!==this.object.zoom&&(this.object.updateProjectionMatrix(),r=!0)}return this._scale=1,this._performCursorZoom=!1,r||this._lastPosition.distanceToSquared(this.object.position)>Gd||8*(1-this._lastQuaternion.dot(this.object.quaternion))>Gd||this._lastTargetPosition.distanceToSquared(this.target)>Gd?(this.dispatchEvent(Qg),this._lastPosition.copy(this.object.position),this._lastQuaternion.copy(this.object.quaternion),this._lastTargetPosition.copy(this.target),!0):!1}_getAutoRotationAngle(t){return t!==null?Vn/60*this.autoRotateSpeed*t:Vn/60/60*this.autoRotateSpeed}_getZoomScale(t){let e=Math.abs(t*.01);return Math.pow(.95,this.zoomSpeed*e)}_rotateLeft(t){this._sphericalDelta.theta-=t}_rotateUp(t){this._sphericalDelta.phi-=t}_panLeft(t,e){hn.setFromMatrixColumn(e,0),hn.multiplyScalar(-t),this._panOffset.add(hn)}_panUp(t,e){this.screenSpacePanning===!0?hn.setFromMatrixColumn(e,1):(hn.setFromMatrixColumn(e,0),hn.crossVectors(this.object.up,hn)),hn.multiplyScalar(t),this._panOffset.add(hn)}_pan(t,e){let n=this.domElement;if(this.object.isPerspectiveCamera){let s=this.object.position;hn.copy(s).sub(this.target);let r=hn.length();r*=Math.tan(this.object.fov/2*Math.PI/180),this._panLeft(2*t*r/n.clientHeight,this.object.matrix),this._panUp(2*e*r/n.clientHeight,this.object.matrix)}else this.object.isOrthographicCamera?(this._panLeft(t*(this.object.right-this.object.left)/this.object.zoom/n.clientWidth,this.object.matrix),this._panUp(e*(this.object.top-this.object.bottom)/this.object.zoom/n.clientHeight,this.object.matrix)):(console.warn("WARNING: OrbitControls.js encountered an unknown camera type - pan disabled."),this.enablePan=!1)}_dollyOut(t){this.object.isPerspectiveCamera||this.object.isOrthographicCamera?this._scale/=t:(console.warn("WARNING: OrbitControls.js encountered an unknown camera type - dolly/zoom disabled."),this.enableZoom=!1)}_dollyIn(t){this.object.isPerspectiveCamera||this.object.isOrthographicCamera?this._scale*=t:(console.warn("WARNING: OrbitControls.js encountered an unknown camera type - dolly/zoom disabled."),this.enableZoom=!1)}_updateZoomParameters(t,e){if(!this.zoomToCursor)return;this._performCursorZoom=!0;let n=this.domElement.getBoundingClientRect(),s=t-n.left,r=e-n.top,o=n.width,a=n.height;this._mouse.x=s/o*2-1,this._mouse.y=-(r/a)*2+1,this._dollyDirection.set(this._mouse.x,this._mouse.y,1).unproject(this.object).sub(this.object.position).normalize()}_clampDistance(t){return Math.max(this.minDistance,Math.min(this.maxDistance,t))}_handleMouseDownRotate(t){this._rotateStart.set(t.clientX,t.clientY)}_handleMouseDownDolly(t){this._updateZoomParameters(t.clientX,t.clientX),this._dollyStart.set(t.clientX,t.clientY)}_handleMouseDownPan(t){this._panStart.set(t.clientX,t.clientY)}_handleMouseMoveRotate(t){this._rotateEnd.set(t.clientX,t.clientY),this._rotateDelta.subVectors(this._rotateEnd,this._rotateStart).multiplyScalar(this.rotateSpeed);let e=this.domElement;this._rotateLeft(Vn*this._rotateDelta.x/e.clientHeight),this._rotateUp(Vn*this._rotateDelta.y/e.clientHeight),this._rotateStart.copy(this._rotateEnd),this.update()}_handleMouseMoveDolly(t){this._dollyEnd.set(t.clientX,t.clientY),this._dollyDelta.subVectors(this._dollyEnd,this._dollyStart),this._dollyDelta.y>0?this._dollyOut(this._getZoomScale(this._dollyDelta.y)):this._dollyDelta.y<0&&this._dollyIn(this._getZoomScale(this._dollyDelta.y)),this._dollyStart.copy(this._dollyEnd),this.update()}_handleMouseMovePan(t){this._panEnd.set(t.clientX,t.clientY),this._panDelta.subVectors(this._panEnd,this._panStart).multiplyScalar(this.panSpeed),this._pan(this._panDelta.x,this._panDelta.y),this._panStart.copy(this._panEnd),this.update()}_handleMouseWheel(t){this._updateZoomParameters(t.clientX,t.clientY),t.deltaY<0?this._dollyIn(this._getZoomScale(t.deltaY)):t.deltaY>0&&this._dollyOut(this._getZoomScale(t.deltaY)),this.update()}_handleKeyDown(t){let e=!1;switch(t.code){case this.keys.UP:t.ctrlKey||t.metaKey||t.shiftKey?this._rotateUp(Vn*this.rotateSpeed/this.domElement.clientHeight):this._pan(0,this.keyPanSpeed),e=!0;break;case this.keys.BOTTOM:t.ctrlKey||t.metaKey||t.shiftKey?this._rotateUp(-Vn*this.rotateSpeed/this.domElement.clientHeight):this._pan(0,-this.keyPanSpeed),e=!0;break;case this.keys.LEFT:t.ctrlKey||t.metaKey||t.shiftKey?this._rotateLeft(Vn*this.rotateSpeed/this.domElement.clientHeight):this._pan(this.keyPanSpeed,0),e=!0;break;case this.keys.RIGHT:t.ctrlKey||t.metaKey||t.shiftKey?this._rotateLeft(-Vn*this.rotateSpeed/this.domElement.clientHeight):this._pan(-this.keyPanSpeed,0),e=!0;break}e&&(t.preventDefault(),this.update())}_handleTouchStartRotate(t){if(this._pointers.length===1)this._rotateStart.set(t.pageX,t.pageY);else{let e=this._getSecondPointerPosition(t),n=.5*(t.pageX+e.x),s=.5*(t.pageY+e.y);this._rotateStart.set(n,s)}}_handleTouchStartPan(t){if(this._pointers.length===1)this._panStart.set(t.pageX,t.pageY);else{let e=this._getSecondPointerPosition(t),n=.5*(t.pageX+e.x),s=.5*(t.pageY+e.y);this._panStart.set(n,s)}}_handleTouchStartDolly(t){let e=this._getSecondPointerPosition(t),n=t.pageX-e.x,s=t.pageY-e.y,r=Math.sqrt(n*n+s*s);this._dollyStart.set(0,r)}_handleTouchStartDollyPan(t){this.enableZoom&&this._handleTouchStartDolly(t),this.enablePan&&this._handleTouchStartPan(t)}_handleTouchStartDollyRotate(t){this.enableZoom&&this._handleTouchStartDolly(t),this.enableRotate&&this._handleTouchStartRotate(t)}_handleTouchMoveRotate(t){if(this._pointers.length==1)this._rotateEnd.set(t.pageX,t.pageY);else{let n=this._getSecondPointerPosition(t),s=.5*(t.pageX+n.x),r=.5*(t.pageY+n.y);this._rotateEnd.set(s,r)}this._rotateDelta.subVectors(this._rotateEnd,this._rotateStart).multiplyScalar(this.rotateSpeed);let e=this.domElement;this._rotateLeft(Vn*this._rotateDelta.x/e.clientHeight),this._rotateUp(Vn*this._rotateDelta.y/e.clientHeight),this._rotateStart.copy(this._rotateEnd)}_handleTouchMovePan(t){if(this._pointers.length===1)this._panEnd.set(t.pageX,t.pageY);else{let e=this._getSecondPointerPosition(t),n=.5*(t.pageX+e.x),s=.5*(t.pageY+e.y);this._panEnd.set(n,s)}this._panDelta.subVectors(this._panEnd,this._panStart).multiplyScalar(this.panSpeed),this._pan(this._panDelta.x,this._panDelta.y),this._panStart.copy(this._panEnd)}_handleTouchMoveDolly(t){let e=this._getSecondPointerPosition(t),n=t.pageX-e.x,s=t.pageY-e.y,r=Math.sqrt(n*n+s*s);this._dollyEnd.set(0,r),this._dollyDelta.set(0,Math.pow(this._dollyEnd.y/this._dollyStart.y,this.zoomSpeed)),this._dollyOut(this._dollyDelta.y),this._dollyStart.copy(this._dollyEnd);let o=(t.pageX+e.x)*.5,a=(t.pageY+e.y)*.5;this._updateZoomParameters(o,a)}_handleTouchMoveDollyPan(t){this.enableZoom&&this._handleTouchMoveDolly(t),this.enablePan&&this._handleTouchMovePan(t)}_handleTouchMoveDollyRotate(t){this.enableZoom&&this._handleTouchMoveDolly(t),this.enableRotate&&this._handleTouchMoveRotate(t)}_addPointer(t){this._pointers.push(t.pointerId)}_removePointer(t){delete this._pointerPositions[t.pointerId];for(let e=0;e<this._pointers.length;e++)if(this._pointers[e]==t.pointerId){this._pointers.splice(e,1);return}}_isTrackingPointer(t){for(let e=0;e<this._pointers.length;e++)if(this._pointers[e]==t.pointerId)return!0;return!1}_trackPointer(t){let e=this._pointerPositions[t.pointerId];e===void 0&&(e=new gt,this._pointerPositions[t.pointerId]=e),e.set(t.pageX,t.pageY)}_getSecondPointerPosition(t){let e=t.pointerId===this._pointers[0]?this._pointers[1]:this._pointers[0];return this._pointerPositions[e]}_customWheelEvent(t){let e=t.deltaMode,n={clientX:t.clientX,clientY:t.clientY,deltaY:t.deltaY};switch(e){case 1:n.deltaY*=16;break;case 2:n.deltaY*=100;break}return t.ctrlKey&&!this._controlActive&&(n.deltaY*=10),n}};function eE(i){this.enabled!==!1&&(this._pointers.length===0&&(this.domElement.setPointerCapture(i.pointerId),this.domElement.addEventListener("pointermove",this._onPointerMove),this.domElement.addEventListener("pointerup",this._onPointerUp)),!this._isTrackingPointer(i)&&(this._addPointer(i),i.pointerType==="touch"?this._onTouchStart(i):this._onMouseDown(i)))}function nE(i){this.enabled!==!1&&(i.pointerType==="touch"?this._onTouchMove(i):this._onMouseMove(i))}function iE(i){switch(this._removePointer(i),this._pointers.length){case 0:this.domElement.releasePointerCapture(i.pointerId),this.domElement.removeEventListener("pointermove",this._onPointerMove),this.domElement.removeEventListener("pointerup",this._onPointerUp),this.dispatchEvent(e0),this.state=Ue.NONE;break;case 1:let t=this._pointers[0],e=this._pointerPositions[t];this._onTouchStart({pointerId:t,pageX:e.x,pageY:e.y});break}}function sE(i){let t;switch(i.button){case 0:t=this.mouseButtons.LEFT;break;case 1:t=this.mouseButtons.MIDDLE;break;case 2:t=this.mouseButtons.RIGHT;break;default:t=-1}switch(t){case Ti.DOLLY:if(this.enableZoom===!1)return;this._handleMouseDownDolly(i),this.state=Ue.DOLLY;break;case Ti.ROTATE:if(i.ctrlKey||i.metaKey||i.shiftKey){if(this.enablePan===!1)return;this._handleMouseDownPan(i),this.state=Ue.PAN}else{if(this.enableRotate===!1)return;this._handleMouseDownRotate(i),this.state=Ue.ROTATE}break;case Ti.PAN:if(i.ctrlKey||i.metaKey||i.shiftKey){if(this.enableRotate===!1)return;this._handleMouseDownRotate(i),this.state=Ue.ROTATE}else{if(this.enablePan===!1)return;this._handleMouseDownPan(i),this.state=Ue.PAN}break;default:this.state=Ue.NONE}this.state!==Ue.NONE&&this.dispatchEvent(Wd)}function rE(i){switch(this.state){case Ue.ROTATE:if(this.enableRotate===!1)return;this._handleMouseMoveRotate(i);break;case Ue.DOLLY:if(this.enableZoom===!1)return;this._handleMouseMoveDolly(i);break;case Ue.PAN:if(this.enablePan===!1)return;this._handleMouseMovePan(i);break}}function oE(i){this.enabled===!1||this.enableZoom===!1||this.state!==Ue.NONE||(i.preventDefault(),this.dispatchEvent(Wd),this._handleMouseWheel(this._customWheelEvent(i)),this.dispatchEvent(e0))}function aE(i){this.enabled===!1||this.enablePan===!1||this._handleKeyDown(i)}function lE(i){switch(this._trackPointer(i),this._pointers.length){case 1:switch(this.touches.ONE){case Gi.ROTATE:if(this.enableRotate===!1)return;this._handleTouchStartRotate(i),this.state=Ue.TOUCH_ROTATE;break;case Gi.PAN:if(this.enablePan===!1)return;this._handleTouchStartPan(i),this.state=Ue.TOUCH_PAN;break;default:this.state=Ue.NONE}break;case 2:switch(this.touches.TWO){case Gi.DOLLY_PAN:if(this.enableZoom===!1&&this.enablePan===!1)return;this._handleTouchStartDollyPan(i),this.state=Ue.TOUCH_DOLLY_PAN;break;case Gi.DOLLY_ROTATE:if(this.enableZoom===!1&&this.enableRotate===!1)return;this._handleTouchStartDollyRotate(i),this.state=Ue.TOUCH_DOLLY_ROTATE;break;default:this.state=Ue.NONE}break;default:this.state=Ue.NONE}this.state!==Ue.NONE&&this.dispatchEvent(Wd)}function cE(i){switch(this._trackPointer(i),this.state){case Ue.TOUCH_ROTATE:if(this.enableRotate===!1)return;this._handleTouchMoveRotate(i),this.update();break;case Ue.TOUCH_PAN:if(this.enablePan===!1)return;this._handleTouchMovePan(i),this.update();break;case Ue.TOUCH_DOLLY_PAN:if(this.enableZoom===!1&&this.enablePan===!1)return;this._handleTouchMoveDollyPan(i),this.update();break;case Ue.TOUCH_DOLLY_ROTATE:if(this.enableZoom===!1&&this.enableRotate===!1)return;this._handleTouchMoveDollyRotate(i),this.update();break;default:this.state=Ue.NONE}}function hE(i){this.enabled!==!1&&i.preventDefault()}function uE(i){i.key==="Control"&&(this._controlActive=!0,this.domElement.getRootNode().addEventListener("keyup",this._interceptControlUp,{passive:!0,capture:!0}))}function dE(i){i.key==="Control"&&(this._controlActive=!1,this.domElement.getRootNode().removeEventListener("keyup",this._interceptControlUp,{passive:!0,capture:!0}))}function Ee(i,t=new D){return t.set(i[1],-i[2],-i[0])}function fs(i,t=new kn){return t.set(i[2],-i[3],-i[1],i[0])}function Xd(i){return new kn().setFromAxisAngle(new D(0,-1,0),i)}function n0(i){return new D(i[1],i[2],i[0])}var i0=40,qd=new D(-.45,.5,1).normalize(),fE=.9,cc=class{constructor(t,e,n,s){let r=Ee(e.low),o=Ee(e.high);this.corners=[0,1,2,3,4,5,6,7].map(a=>new D(a&1?r.x:o.x,a&2?r.y:o.y,a&4?r.z:o.z)),this.middle=r.clone().add(o).multiplyScalar(.5),this.formation=n,this.perspective=new Un(i0,1,.1,5e3),this.above=new fo(-1,1,1,-1,.1,5e3),this.above.up.set(0,0,-1),this.orbit=new ra(this.perspective,t),this.orbit.maxPolarAngle=.497*Math.PI,this.orbit.minDistance=1,this.orbit.zoomToCursor=!1,this.pan=new ra(this.above,t),this.pan.enableRotate=!1,this.pan.mouseButtons={LEFT:Ti.PAN,MIDDLE:Ti.DOLLY,RIGHT:Ti.PAN},this.pan.touches={ONE:Gi.PAN,TWO:Gi.DOLLY_PAN},this.followed=new D,this.kind="free",this.isPlaced=!1;for(let a of[this.orbit,this.pan])a.enableDamping=!1,a.addEventListener("change",s)}get current(){return this.kind==="top"?this.above:this.perspective}resize(t,e){this.perspective.aspect=t/e,this.perspective.updateProjectionMatrix(),this.frameAbove(t/e),this.isPlaced||this.set(this.kind),this.isPlaced=!0}set(t){this.kind=t,this.orbit.enabled=t!=="top",this.pan.enabled=t==="top",t==="free"?this.overview():t==="follow"?this.nearby():(this.pan.target.copy(this.middle),this.above.position.copy(this.middle).add(new D(0,1e3,0)),this.above.zoom=1,this.above.updateProjectionMatrix(),this.pan.update())}overview(){this.orbit.target.copy(this.middle);let{perspective:t}=this;t.position.copy(this.middle).add(qd),t.lookAt(this.middle),t.updateMatrixWorld();let[e,n,s]=[0,1,2].map(a=>new D().setFromMatrixColumn(t.matrixWorld,a)),r=fE*Math.tan(i0*Math.PI/360),o=0;for(let a of this.corners){let l=a.clone().sub(this.middle),c=Math.max(Math.abs(l.dot(e))/t.aspect,Math.abs(l.dot(n)));o=Math.max(o,l.dot(s)+c/r)}t.position.copy(this.middle).addScaledVector(qd,o),this.orbit.update()}nearby(){let t=this.isPlaced?this.perspective.position.clone().sub(this.orbit.target).normalize():qd;this.orbit.target.copy(this.followed);let e=1.6*this.formation/Math.min(1,this.perspective.aspect);this.perspective.position.copy(this.followed).addScaledVector(t,e),this.orbit.update()}follow(t){let e=t.clone();e.y+=.35*this.formation,this.kind==="follow"&&(this.perspective.position.add(e).sub(this.followed),this.orbit.target.copy(e),this.orbit.update()),this.followed.copy(e)}frameAbove(t){let e=1.1*Math.abs(this.corners[0].x-this.corners[1].x),n=1.1*Math.abs(this.corners[0].z-this.corners[4].z),s=Math.max(n,e/t)/2+.5;Object.assign(this.above,{left:-s*t,right:s*t,top:s,bottom:-s}),this.above.updateProjectionMatrix()}dispose(){this.orbit.dispose(),this.pan.dispose()}};var s0=new ci,hc=new D,yo=class extends tc{constructor(){super(),this.isLineSegmentsGeometry=!0,this.type="LineSegmentsGeometry";let t=[-1,2,0,1,2,0,-1,1,0,1,1,0,-1,0,0,1,0,0,-1,-1,0,1,-1,0],e=[-1,2,1,2,-1,1,1,1,-1,-1,1,-1,-1,-2,1,-2],n=[0,2,1,2,3,1,2,4,3,4,5,3,4,6,5,6,7,5];this.setIndex(n),this.setAttribute("position",new ee(t,3)),this.setAttribute("uv",new ee(e,2))}applyMatrix4(t){let e=this.attributes.instanceStart,n=this.attributes.instanceEnd;return e!==void 0&&(e.applyMatrix4(t),n.applyMatrix4(t),e.needsUpdate=!0),this.boundingBox!==null&&this.computeBoundingBox(),this.boundingSphere!==null&&this.computeBoundingSphere(),this}setPositions(t){let e;t instanceof Float32Array?e=t:Array.isArray(t)&&(e=new Float32Array(t));let n=new ur(e,6,1);return this.setAttribute("instanceStart",new Hi(n,3,0)),this.setAttribute("instanceEnd",new Hi(n,3,3)),this.instanceCount=this.attributes.instanceStart.count,this.computeBoundingBox(),this.computeBoundingSphere(),this}setColors(t){let e;t instanceof Float32Array?e=t:Array.isArray(t)&&(e=new Float32Array(t));let n=new ur(e,6,1);return this.setAttribute("instanceColorStart",new Hi(n,3,0)),this.setAttribute("instanceColorEnd",new Hi(n,3,3)),this}fromWireframeGeometry(t){return this.setPositions(t.attributes.position.array),this}fromEdgesGeometry(t){return this.setPositions(t.attributes.position.array),this}fromMesh(t){return this.fromWireframeGeometry(new $l(t.geometry)),this}fromLineSegments(t){let e=t.geometry;return this.setPositions(e.attributes.position.array),this}computeBoundingBox(){this.boundingBox===null&&(this.boundingBox=new ci);let t=this.attributes.instanceStart,e=this.attributes.instanceEnd;t!==void 0&&e!==void 0&&(this.boundingBox.setFromBufferAttribute(t),s0.setFromBufferAttribute(e),this.boundingBox.union(s0))}computeBoundingSphere(){this.boundingSphere===null&&(this.boundingSphere=new zi),this.boundingBox===null&&this.computeBoundingBox();let t=this.attributes.instanceStart,e=this.attributes.instanceEnd;if(t!==void 0&&e!==void 0){let n=this.boundingSphere.center;this.boundingBox.getCenter(n);let s=0;for(let r=0,o=t.count;r<o;r++)hc.fromBufferAttribute(t,r),s=Math.max(s,n.distanceToSquared(hc)),hc.fromBufferAttribute(e,r),s=Math.max(s,n.distanceToSquared(hc));this.boundingSphere.radius=Math.sqrt(s),isNaN(this.boundingSphere.radius)&&console.error("THREE.LineSegmentsGeometry.computeBoundingSphere(): Computed radius is NaN. The instanced position data is likely to have NaN values.",this)}}toJSON(){}applyMatrix(t){return console.warn("THREE.LineSegmentsGeometry: applyMatrix() has been renamed to applyMatrix4()."),this.applyMatrix4(t)}};St.line={worldUnits:{value:1},linewidth:{value:1},resolution:{value:new gt(1,1)},dashOffset:{value:0},dashScale:{value:1},dashSize:{value:1},gapSize:{value:1}};Nn.line={uniforms:rc.merge([St.common,St.fog,St.line]),vertexShader:`
+		#include <common>
+		#include <color_pars_vertex>
+		#include <fog_pars_vertex>
+		#include <logdepthbuf_pars_vertex>
+		#include <clipping_planes_pars_vertex>
+
+		uniform float linewidth;
+		uniform vec2 resolution;
+
+		attribute vec3 instanceStart;
+		attribute vec3 instanceEnd;
+
+		attribute vec3 instanceColorStart;
+		attribute vec3 instanceColorEnd;
+
+		#ifdef WORLD_UNITS
+
+			varying vec4 worldPos;
+			varying vec3 worldStart;
+			varying vec3 worldEnd;
+
+			#ifdef USE_DASH
+
+				varying vec2 vUv;
+
+			#endif
+
+		#else
+
+			varying vec2 vUv;
+
+		#endif
+
+		#ifdef USE_DASH
+
+			uniform float dashScale;
+			attribute float instanceDistanceStart;
+			attribute float instanceDistanceEnd;
+			varying float vLineDistance;
+
+		#endif
+
+		void trimSegment( const in vec4 start, inout vec4 end ) {
+
+			// trim end segment so it terminates between the camera plane and the near plane
+
+			// conservative estimate of the near plane
+			float a = projectionMatrix[ 2 ][ 2 ]; // 3nd entry in 3th column
+			float b = projectionMatrix[ 3 ][ 2 ]; // 3nd entry in 4th column
+			float nearEstimate = - 0.5 * b / a;
+
+			float alpha = ( nearEstimate - start.z ) / ( end.z - start.z );
+
+			end.xyz = mix( start.xyz, end.xyz, alpha );
+
+		}
+
+		void main() {
+
+			#ifdef USE_COLOR
+
+				vColor.xyz = ( position.y < 0.5 ) ? instanceColorStart : instanceColorEnd;
+
+			#endif
+
+			#ifdef USE_DASH
+
+				vLineDistance = ( position.y < 0.5 ) ? dashScale * instanceDistanceStart : dashScale * instanceDistanceEnd;
+				vUv = uv;
+
+			#endif
+
+			float aspect = resolution.x / resolution.y;
+
+			// camera space
+			vec4 start = modelViewMatrix * vec4( instanceStart, 1.0 );
+			vec4 end = modelViewMatrix * vec4( instanceEnd, 1.0 );
+
+			#ifdef WORLD_UNITS
+
+				worldStart = start.xyz;
+				worldEnd = end.xyz;
+
+			#else
+
+				vUv = uv;
+
+			#endif
+
+			// special case for perspective projection, and segments that terminate either in, or behind, the camera plane
+			// clearly the gpu firmware has a way of addressing this issue when projecting into ndc space
+			// but we need to perform ndc-space calculations in the shader, so we must address this issue directly
+			// perhaps there is a more elegant solution -- WestLangley
+
+			bool perspective = ( projectionMatrix[ 2 ][ 3 ] == - 1.0 ); // 4th entry in the 3rd column
+
+			if ( perspective ) {
+
+				if ( start.z < 0.0 && end.z >= 0.0 ) {
+
+					trimSegment( start, end );
+
+				} else if ( end.z < 0.0 && start.z >= 0.0 ) {
+
+					trimSegment( end, start );
+
+				}
+
+			}
+
+			// clip space
+			vec4 clipStart = projectionMatrix * start;
+			vec4 clipEnd = projectionMatrix * end;
+
+			// ndc space
+			vec3 ndcStart = clipStart.xyz / clipStart.w;
+			vec3 ndcEnd = clipEnd.xyz / clipEnd.w;
+
+			// direction
+			vec2 dir = ndcEnd.xy - ndcStart.xy;
+
+			// account for clip-space aspect ratio
+			dir.x *= aspect;
+			dir = normalize( dir );
+
+			#ifdef WORLD_UNITS
+
+				vec3 worldDir = normalize( end.xyz - start.xyz );
+				vec3 tmpFwd = normalize( mix( start.xyz, end.xyz, 0.5 ) );
+				vec3 worldUp = normalize( cross( worldDir, tmpFwd ) );
+				vec3 worldFwd = cross( worldDir, worldUp );
+				worldPos = position.y < 0.5 ? start: end;
+
+				// height offset
+				float hw = linewidth * 0.5;
+				worldPos.xyz += position.x < 0.0 ? hw * worldUp : - hw * worldUp;
+
+				// don't extend the line if we're rendering dashes because we
+				// won't be rendering the endcaps
+				#ifndef USE_DASH
+
+					// cap extension
+					worldPos.xyz += position.y < 0.5 ? - hw * worldDir : hw * worldDir;
+
+					// add width to the box
+					worldPos.xyz += worldFwd * hw;
+
+					// endcaps
+					if ( position.y > 1.0 || position.y < 0.0 ) {
+
+						worldPos.xyz -= worldFwd * 2.0 * hw;
+
+					}
+
+				#endif
+
+				// project the worldpos
+				vec4 clip = projectionMatrix * worldPos;
+
+				// shift the depth of the projected points so the line
+				// segments overlap neatly
+				vec3 clipPose = ( position.y < 0.5 ) ? ndcStart : ndcEnd;
+				clip.z = clipPose.z * clip.w;
+
+			#else
+
+				vec2 offset = vec2( dir.y, - dir.x );
+				// undo aspect ratio adjustment
+				dir.x /= aspect;
+				offset.x /= aspect;
+
+				// sign flip
+				if ( position.x < 0.0 ) offset *= - 1.0;
+
+				// endcaps
+				if ( position.y < 0.0 ) {
+
+					offset += - dir;
+
+				} else if ( position.y > 1.0 ) {
+
+					offset += dir;
+
+				}
+
+				// adjust for linewidth
+				offset *= linewidth;
+
+				// adjust for clip-space to screen-space conversion // maybe resolution should be based on viewport ...
+				offset /= resolution.y;
+
+				// select end
+				vec4 clip = ( position.y < 0.5 ) ? clipStart : clipEnd;
+
+				// back to clip space
+				offset *= clip.w;
+
+				clip.xy += offset;
+
+			#endif
+
+			gl_Position = clip;
+
+			vec4 mvPosition = ( position.y < 0.5 ) ? start : end; // this is an approximation
+
+			#include <logdepthbuf_vertex>
+			#include <clipping_planes_vertex>
+			#include <fog_vertex>
+
+		}
+		`,fragmentShader:`
+		uniform vec3 diffuse;
+		uniform float opacity;
+		uniform float linewidth;
+
+		#ifdef USE_DASH
+
+			uniform float dashOffset;
+			uniform float dashSize;
+			uniform float gapSize;
+
+		#endif
+
+		varying float vLineDistance;
+
+		#ifdef WORLD_UNITS
+
+			varying vec4 worldPos;
+			varying vec3 worldStart;
+			varying vec3 worldEnd;
+
+			#ifdef USE_DASH
+
+				varying vec2 vUv;
+
+			#endif
+
+		#else
+
+			varying vec2 vUv;
+
+		#endif
+
+		#include <common>
+		#include <color_pars_fragment>
+		#include <fog_pars_fragment>
+		#include <logdepthbuf_pars_fragment>
+		#include <clipping_planes_pars_fragment>
+
+		vec2 closestLineToLine(vec3 p1, vec3 p2, vec3 p3, vec3 p4) {
+
+			float mua;
+			float mub;
+
+			vec3 p13 = p1 - p3;
+			vec3 p43 = p4 - p3;
+
+			vec3 p21 = p2 - p1;
+
+			float d1343 = dot( p13, p43 );
+			float d4321 = dot( p43, p21 );
+			float d1321 = dot( p13, p21 );
+			float d4343 = dot( p43, p43 );
+			float d2121 = dot( p21, p21 );
+
+			float denom = d2121 * d4343 - d4321 * d4321;
+
+			float numer = d1343 * d4321 - d1321 * d4343;
+
+			mua = numer / denom;
+			mua = clamp( mua, 0.0, 1.0 );
+			mub = ( d1343 + d4321 * ( mua ) ) / d4343;
+			mub = clamp( mub, 0.0, 1.0 );
+
+			return vec2( mua, mub );
+
+		}
+
+		void main() {
+
+			#include <clipping_planes_fragment>
+
+			#ifdef USE_DASH
+
+				if ( vUv.y < - 1.0 || vUv.y > 1.0 ) discard; // discard endcaps
+
+				if ( mod( vLineDistance + dashOffset, dashSize + gapSize ) > dashSize ) discard; // todo - FIX
+
+			#endif
+
+			float alpha = opacity;
+
+			#ifdef WORLD_UNITS
+
+				// Find the closest points on the view ray and the line segment
+				vec3 rayEnd = normalize( worldPos.xyz ) * 1e5;
+				vec3 lineDir = worldEnd - worldStart;
+				vec2 params = closestLineToLine( worldStart, worldEnd, vec3( 0.0, 0.0, 0.0 ), rayEnd );
+
+				vec3 p1 = worldStart + lineDir * params.x;
+				vec3 p2 = rayEnd * params.y;
+				vec3 delta = p1 - p2;
+				float len = length( delta );
+				float norm = len / linewidth;
+
+				#ifndef USE_DASH
+
+					#ifdef USE_ALPHA_TO_COVERAGE
+
+						float dnorm = fwidth( norm );
+						alpha = 1.0 - smoothstep( 0.5 - dnorm, 0.5 + dnorm, norm );
+
+					#else
+
+						if ( norm > 0.5 ) {
+
+							discard;
+
+						}
+
+					#endif
+
+				#endif
+
+			#else
+
+				#ifdef USE_ALPHA_TO_COVERAGE
+
+					// artifacts appear on some hardware if a derivative is taken within a conditional
+					float a = vUv.x;
+					float b = ( vUv.y > 0.0 ) ? vUv.y - 1.0 : vUv.y + 1.0;
+					float len2 = a * a + b * b;
+					float dlen = fwidth( len2 );
+
+					if ( abs( vUv.y ) > 1.0 ) {
+
+						alpha = 1.0 - smoothstep( 1.0 - dlen, 1.0 + dlen, len2 );
+
+					}
+
+				#else
+
+					if ( abs( vUv.y ) > 1.0 ) {
+
+						float a = vUv.x;
+						float b = ( vUv.y > 0.0 ) ? vUv.y - 1.0 : vUv.y + 1.0;
+						float len2 = a * a + b * b;
+
+						if ( len2 > 1.0 ) discard;
+
+					}
+
+				#endif
+
+			#endif
+
+			vec4 diffuseColor = vec4( diffuse, alpha );
+
+			#include <logdepthbuf_fragment>
+			#include <color_fragment>
+
+			gl_FragColor = vec4( diffuseColor.rgb, alpha );
+
+			#include <tonemapping_fragment>
+			#include <colorspace_fragment>
+			#include <fog_fragment>
+			#include <premultiplied_alpha_fragment>
+
+		}
+		`};var ps=class extends hi{static get type(){return"LineMaterial"}constructor(t){super({uniforms:rc.clone(Nn.line.uniforms),vertexShader:Nn.line.vertexShader,fragmentShader:Nn.line.fragmentShader,clipping:!0}),this.isLineMaterial=!0,this.setValues(t)}get color(){return this.uniforms.diffuse.value}set color(t){this.uniforms.diffuse.value=t}get worldUnits(){return"WORLD_UNITS"in this.defines}set worldUnits(t){t===!0?this.defines.WORLD_UNITS="":delete this.defines.WORLD_UNITS}get linewidth(){return this.uniforms.linewidth.value}set linewidth(t){this.uniforms.linewidth&&(this.uniforms.linewidth.value=t)}get dashed(){return"USE_DASH"in this.defines}set dashed(t){t===!0!==this.dashed&&(this.needsUpdate=!0),t===!0?this.defines.USE_DASH="":delete this.defines.USE_DASH}get dashScale(){return this.uniforms.dashScale.value}set dashScale(t){this.uniforms.dashScale.value=t}get dashSize(){return this.uniforms.dashSize.value}set dashSize(t){this.uniforms.dashSize.value=t}get dashOffset(){return this.uniforms.dashOffset.value}set dashOffset(t){this.uniforms.dashOffset.value=t}get gapSize(){return this.uniforms.gapSize.value}set gapSize(t){this.uniforms.gapSize.value=t}get opacity(){return this.uniforms.opacity.value}set opacity(t){this.uniforms&&(this.uniforms.opacity.value=t)}get resolution(){return this.uniforms.resolution.value}set resolution(t){this.uniforms.resolution.value.copy(t)}get alphaToCoverage(){return"USE_ALPHA_TO_COVERAGE"in this.defines}set alphaToCoverage(t){this.defines&&(t===!0!==this.alphaToCoverage&&(this.needsUpdate=!0),t===!0?this.defines.USE_ALPHA_TO_COVERAGE="":delete this.defines.USE_ALPHA_TO_COVERAGE)}};var Yd=new De,r0=new D,o0=new D,yn=new De,vn=new De,Wi=new De,$d=new D,Zd=new Ge,Mn=new go,a0=new D,uc=new ci,dc=new zi,Xi=new De,qi,dr;function l0(i,t,e){return Xi.set(0,0,-t,1).applyMatrix4(i.projectionMatrix),Xi.multiplyScalar(1/Xi.w),Xi.x=dr/e.width,Xi.y=dr/e.height,Xi.applyMatrix4(i.projectionMatrixInverse),Xi.multiplyScalar(1/Xi.w),Math.abs(Math.max(Xi.x,Xi.y))}function pE(i,t){let e=i.matrixWorld,n=i.geometry,s=n.attributes.instanceStart,r=n.attributes.instanceEnd,o=Math.min(n.instanceCount,s.count);for(let a=0,l=o;a<l;a++){Mn.start.fromBufferAttribute(s,a),Mn.end.fromBufferAttribute(r,a),Mn.applyMatrix4(e);let c=new D,u=new D;qi.distanceSqToSegment(Mn.start,Mn.end,u,c),u.distanceTo(c)<dr*.5&&t.push({point:u,pointOnLine:c,distance:qi.origin.distanceTo(u),object:i,face:null,faceIndex:a,uv:null,uv1:null})}}function mE(i,t,e){let n=t.projectionMatrix,r=i.material.resolution,o=i.matrixWorld,a=i.geometry,l=a.attributes.instanceStart,c=a.attributes.instanceEnd,u=Math.min(a.instanceCount,l.count),d=-t.near;qi.at(1,Wi),Wi.w=1,Wi.applyMatrix4(t.matrixWorldInverse),Wi.applyMatrix4(n),Wi.multiplyScalar(1/Wi.w),Wi.x*=r.x/2,Wi.y*=r.y/2,Wi.z=0,$d.copy(Wi),Zd.multiplyMatrices(t.matrixWorldInverse,o);for(let h=0,f=u;h<f;h++){if(yn.fromBufferAttribute(l,h),vn.fromBufferAttribute(c,h),yn.w=1,vn.w=1,yn.applyMatrix4(Zd),vn.applyMatrix4(Zd),yn.z>d&&vn.z>d)continue;if(yn.z>d){let y=yn.z-vn.z,v=(yn.z-d)/y;yn.lerp(vn,v)}else if(vn.z>d){let y=vn.z-yn.z,v=(vn.z-d)/y;vn.lerp(yn,v)}yn.applyMatrix4(n),vn.applyMatrix4(n),yn.multiplyScalar(1/yn.w),vn.multiplyScalar(1/vn.w),yn.x*=r.x/2,yn.y*=r.y/2,vn.x*=r.x/2,vn.y*=r.y/2,Mn.start.copy(yn),Mn.start.z=0,Mn.end.copy(vn),Mn.end.z=0;let _=Mn.closestPointToPointParameter($d,!0);Mn.at(_,a0);let m=sc.lerp(yn.z,vn.z,_),p=m>=-1&&m<=1,b=$d.distanceTo(a0)<dr*.5;if(p&&b){Mn.start.fromBufferAttribute(l,h),Mn.end.fromBufferAttribute(c,h),Mn.start.applyMatrix4(o),Mn.end.applyMatrix4(o);let y=new D,v=new D;qi.distanceSqToSegment(Mn.start,Mn.end,v,y),e.push({point:v,pointOnLine:y,distance:qi.origin.distanceTo(v),object:i,face:null,faceIndex:h,uv:null,uv1:null})}}}var fc=class extends _e{constructor(t=new yo,e=new ps({color:Math.random()*16777215})){super(t,e),this.isLineSegments2=!0,this.type="LineSegments2"}computeLineDistances(){let t=this.geometry,e=t.attributes.instanceStart,n=t.attributes.instanceEnd,s=new Float32Array(2*e.count);for(let o=0,a=0,l=e.count;o<l;o++,a+=2)r0.fromBufferAttribute(e,o),o0.fromBufferAttribute(n,o),s[a]=a===0?0:s[a-1],s[a+1]=s[a]+r0.distanceTo(o0);let r=new ur(s,2,1);return t.setAttribute("instanceDistanceStart",new Hi(r,1,0)),t.setAttribute("instanceDistanceEnd",new Hi(r,1,1)),this}raycast(t,e){let n=this.material.worldUnits,s=t.camera;s===null&&!n&&console.error('LineSegments2: "Raycaster.camera" needs to be set in order to raycast against LineSegments2 while worldUnits is set to false.');let r=t.params.Line2!==void 0&&t.params.Line2.threshold||0;qi=t.ray;let o=this.matrixWorld,a=this.geometry,l=this.material;dr=l.linewidth+r,a.boundingSphere===null&&a.computeBoundingSphere(),dc.copy(a.boundingSphere).applyMatrix4(o);let c;if(n)c=dr*.5;else{let d=Math.max(s.near,dc.distanceToPoint(qi.origin));c=l0(s,d,l.resolution)}if(dc.radius+=c,qi.intersectsSphere(dc)===!1)return;a.boundingBox===null&&a.computeBoundingBox(),uc.copy(a.boundingBox).applyMatrix4(o);let u;if(n)u=dr*.5;else{let d=Math.max(s.near,uc.distanceToPoint(qi.origin));u=l0(s,d,l.resolution)}uc.expandByScalar(u),qi.intersectsBox(uc)!==!1&&(n?pE(this,e):mE(this,s,e))}onBeforeRender(t){let e=this.material.uniforms;e&&e.resolution&&(t.getViewport(Yd),this.material.uniforms.resolution.value.set(Yd.z,Yd.w))}};var fr=class extends yo{constructor(){super(),this.isLineGeometry=!0,this.type="LineGeometry"}setPositions(t){let e=t.length-3,n=new Float32Array(2*e);for(let s=0;s<e;s+=3)n[2*s]=t[s],n[2*s+1]=t[s+1],n[2*s+2]=t[s+2],n[2*s+3]=t[s+3],n[2*s+4]=t[s+4],n[2*s+5]=t[s+5];return super.setPositions(n),this}setColors(t){let e=t.length-3,n=new Float32Array(2*e);for(let s=0;s<e;s+=3)n[2*s]=t[s],n[2*s+1]=t[s+1],n[2*s+2]=t[s+2],n[2*s+3]=t[s+3],n[2*s+4]=t[s+4],n[2*s+5]=t[s+5];return super.setColors(n),this}fromLine(t){let e=t.geometry;return this.setPositions(e.attributes.position.array),this}};var pc=class extends fc{constructor(t=new fr,e=new ps({color:Math.random()*16777215})){super(t,e),this.isLine2=!0,this.type="Line2"}};var Ai=class extends pc{constructor(t){super(new fr,t),this.frustumCulled=!1,this.visible=!1}setPoints(t,e){this.visible=t.length>1,this.visible&&(this.geometry.dispose(),this.geometry=new fr,this.geometry.setPositions(t.flatMap(([n,s,r])=>[s,-r,-n])),e&&this.geometry.setColors(e.flatMap(({r:n,g:s,b:r})=>[n,s,r])),this.material.dashed&&this.computeLineDistances())}showFirst(t){this.geometry.instanceCount=t}};var gE=1.5,mc=class{constructor(t,e,n){if(this.group=new Be,this.always=!1,this.found=t.clearance,this.label=null,!this.found)return;let{min:s,obstacle:r,point_hull:o,point_obstacle:a}=this.found,l={depthTest:!1,transparent:!0},c=new Ai(e.line("clearance",3,l));c.setPoints([o,a]);let u=new po(.06,16,10),d=e.flat("clearance",l),h=[o,a].map(f=>{let g=new _e(u,d);return Ee(f,g.position),g});this.group.add(c,...h);for(let f of this.group.children)f.renderOrder=10;this.label=n.add(s>0?`${s.toFixed(2)} m to ${r}`:`touched ${r}`,s>0?"clearance":"contact"),this.label.position.copy(Ee(o)).add(Ee(a)).multiplyScalar(.5)}update(t){let e=this.found!==null&&(this.always||Math.abs(t-this.found.time)<=gE);this.group.visible=e,this.label&&(this.label.visible=e)}};var _c=0,_E=1,xE=new D,c0=new go,Jd=new Jn,h0=new D,gc=new Fi,xc=class{constructor(){this.tolerance=-1,this.faces=[],this.newFaces=[],this.assigned=new yc,this.unassigned=new yc,this.vertices=[]}setFromPoints(t){if(t.length>=4){this.makeEmpty();for(let e=0,n=t.length;e<n;e++)this.vertices.push(new Kd(t[e]));this.compute()}return this}setFromObject(t){let e=[];return t.updateMatrixWorld(!0),t.traverse(function(n){let s=n.geometry;if(s!==void 0){let r=s.attributes.position;if(r!==void 0)for(let o=0,a=r.count;o<a;o++){let l=new D;l.fromBufferAttribute(r,o).applyMatrix4(n.matrixWorld),e.push(l)}}}),this.setFromPoints(e)}containsPoint(t){let e=this.faces;for(let n=0,s=e.length;n<s;n++)if(e[n].distanceToPoint(t)>this.tolerance)return!1;return!0}intersectRay(t,e){let n=this.faces,s=-1/0,r=1/0;for(let o=0,a=n.length;o<a;o++){let l=n[o],c=l.distanceToPoint(t.origin),u=l.normal.dot(t.direction);if(c>0&&u>=0)return null;let d=u!==0?-c/u:0;if(!(d<=0)&&(u>0?r=Math.min(d,r):s=Math.max(d,s),s>r))return null}return s!==-1/0?t.at(s,e):t.at(r,e),e}intersectsRay(t){return this.intersectRay(t,xE)!==null}makeEmpty(){return this.faces=[],this.vertices=[],this}addVertexToFace(t,e){return t.face=e,e.outside===null?this.assigned.append(t):this.assigned.insertBefore(e.outside,t),e.outside=t,this}removeVertexFromFace(t,e){return t===e.outside&&(t.next!==null&&t.next.face===e?e.outside=t.next:e.outside=null),this.assigned.remove(t),this}removeAllVerticesFromFace(t){if(t.outside!==null){let e=t.outside,n=t.outside;for(;n.next!==null&&n.next.face===t;)n=n.next;return this.assigned.removeSubList(e,n),e.prev=n.next=null,t.outside=null,e}}deleteFaceVertices(t,e){let n=this.removeAllVerticesFromFace(t);if(n!==void 0)if(e===void 0)this.unassigned.appendChain(n);else{let s=n;do{let r=s.next;e.distanceToPoint(s.point)>this.tolerance?this.addVertexToFace(s,e):this.unassigned.append(s),s=r}while(s!==null)}return this}resolveUnassignedPoints(t){if(this.unassigned.isEmpty()===!1){let e=this.unassigned.first();do{let n=e.next,s=this.tolerance,r=null;for(let o=0;o<t.length;o++){let a=t[o];if(a.mark===_c){let l=a.distanceToPoint(e.point);if(l>s&&(s=l,r=a),s>1e3*this.tolerance)break}}r!==null&&this.addVertexToFace(e,r),e=n}while(e!==null)}return this}computeExtremes(){let t=new D,e=new D,n=[],s=[];for(let r=0;r<3;r++)n[r]=s[r]=this.vertices[0];t.copy(this.vertices[0].point),e.copy(this.vertices[0].point);for(let r=0,o=this.vertices.length;r<o;r++){let a=this.vertices[r],l=a.point;for(let c=0;c<3;c++)l.getComponent(c)<t.getComponent(c)&&(t.setComponent(c,l.getComponent(c)),n[c]=a);for(let c=0;c<3;c++)l.getComponent(c)>e.getComponent(c)&&(e.setComponent(c,l.getComponent(c)),s[c]=a)}return this.tolerance=3*Number.EPSILON*(Math.max(Math.abs(t.x),Math.abs(e.x))+Math.max(Math.abs(t.y),Math.abs(e.y))+Math.max(Math.abs(t.z),Math.abs(e.z))),{min:n,max:s}}computeInitialHull(){let t=this.vertices,e=this.computeExtremes(),n=e.min,s=e.max,r=0,o=0;for(let h=0;h<3;h++){let f=s[h].point.getComponent(h)-n[h].point.getComponent(h);f>r&&(r=f,o=h)}let a=n[o],l=s[o],c,u;r=0,c0.set(a.point,l.point);for(let h=0,f=this.vertices.length;h<f;h++){let g=t[h];if(g!==a&&g!==l){c0.closestPointToPoint(g.point,!0,h0);let _=h0.distanceToSquared(g.point);_>r&&(r=_,c=g)}}r=-1,Jd.setFromCoplanarPoints(a.point,l.point,c.point);for(let h=0,f=this.vertices.length;h<f;h++){let g=t[h];if(g!==a&&g!==l&&g!==c){let _=Math.abs(Jd.distanceToPoint(g.point));_>r&&(r=_,u=g)}}let d=[];if(Jd.distanceToPoint(u.point)<0){d.push(Ci.create(a,l,c),Ci.create(u,l,a),Ci.create(u,c,l),Ci.create(u,a,c));for(let h=0;h<3;h++){let f=(h+1)%3;d[h+1].getEdge(2).setTwin(d[0].getEdge(f)),d[h+1].getEdge(1).setTwin(d[f+1].getEdge(0))}}else{d.push(Ci.create(a,c,l),Ci.create(u,a,l),Ci.create(u,l,c),Ci.create(u,c,a));for(let h=0;h<3;h++){let f=(h+1)%3;d[h+1].getEdge(2).setTwin(d[0].getEdge((3-h)%3)),d[h+1].getEdge(0).setTwin(d[f+1].getEdge(1))}}for(let h=0;h<4;h++)this.faces.push(d[h]);for(let h=0,f=t.length;h<f;h++){let g=t[h];if(g!==a&&g!==l&&g!==c&&g!==u){r=this.tolerance;let _=null;for(let m=0;m<4;m++){let p=this.faces[m].distanceToPoint(g.point);p>r&&(r=p,_=this.faces[m])}_!==null&&this.addVertexToFace(g,_)}}return this}reindexFaces(){let t=[];for(let e=0;e<this.faces.length;e++){let n=this.faces[e];n.mark===_c&&t.push(n)}return this.faces=t,this}nextVertexToAdd(){if(this.assigned.isEmpty()===!1){let t,e=0,n=this.assigned.first().face,s=n.outside;do{let r=n.distanceToPoint(s.point);r>e&&(e=r,t=s),s=s.next}while(s!==null&&s.face===n);return t}}computeHorizon(t,e,n,s){this.deleteFaceVertices(n),n.mark=_E;let r;e===null?r=e=n.getEdge(0):r=e.next;do{let o=r.twin,a=o.face;a.mark===_c&&(a.distanceToPoint(t)>this.tolerance?this.computeHorizon(t,o,a,s):s.push(r)),r=r.next}while(r!==e);return this}addAdjoiningFace(t,e){let n=Ci.create(t,e.tail(),e.head());return this.faces.push(n),n.getEdge(-1).setTwin(e.twin),n.getEdge(0)}addNewFaces(t,e){this.newFaces=[];let n=null,s=null;for(let r=0;r<e.length;r++){let o=e[r],a=this.addAdjoiningFace(t,o);n===null?n=a:a.next.setTwin(s),this.newFaces.push(a.face),s=a}return n.next.setTwin(s),this}addVertexToHull(t){let e=[];return this.unassigned.clear(),this.removeVertexFromFace(t,t.face),this.computeHorizon(t.point,null,t.face,e),this.addNewFaces(t,e),this.resolveUnassignedPoints(this.newFaces),this}cleanup(){return this.assigned.clear(),this.unassigned.clear(),this.newFaces=[],this}compute(){let t;for(this.computeInitialHull();(t=this.nextVertexToAdd())!==void 0;)this.addVertexToHull(t);return this.reindexFaces(),this.cleanup(),this}},Ci=class i{constructor(){this.normal=new D,this.midpoint=new D,this.area=0,this.constant=0,this.outside=null,this.mark=_c,this.edge=null}static create(t,e,n){let s=new i,r=new oa(t,s),o=new oa(e,s),a=new oa(n,s);return r.next=a.prev=o,o.next=r.prev=a,a.next=o.prev=r,s.edge=r,s.compute()}getEdge(t){let e=this.edge;for(;t>0;)e=e.next,t--;for(;t<0;)e=e.prev,t++;return e}compute(){let t=this.edge.tail(),e=this.edge.head(),n=this.edge.next.head();return gc.set(t.point,e.point,n.point),gc.getNormal(this.normal),gc.getMidpoint(this.midpoint),this.area=gc.getArea(),this.constant=this.normal.dot(this.midpoint),this}distanceToPoint(t){return this.normal.dot(t)-this.constant}},oa=class{constructor(t,e){this.vertex=t,this.prev=null,this.next=null,this.twin=null,this.face=e}head(){return this.vertex}tail(){return this.prev?this.prev.vertex:null}length(){let t=this.head(),e=this.tail();return e!==null?e.point.distanceTo(t.point):-1}lengthSquared(){let t=this.head(),e=this.tail();return e!==null?e.point.distanceToSquared(t.point):-1}setTwin(t){return this.twin=t,t.twin=this,this}},Kd=class{constructor(t){this.point=t,this.prev=null,this.next=null,this.face=null}},yc=class{constructor(){this.head=null,this.tail=null}first(){return this.head}last(){return this.tail}clear(){return this.head=this.tail=null,this}insertBefore(t,e){return e.prev=t.prev,e.next=t,e.prev===null?this.head=e:e.prev.next=e,t.prev=e,this}insertAfter(t,e){return e.prev=t,e.next=t.next,e.next===null?this.tail=e:e.next.prev=e,t.next=e,this}append(t){return this.head===null?this.head=t:this.tail.next=t,t.prev=this.tail,t.next=null,this.tail=t,this}appendChain(t){for(this.head===null?this.head=t:this.tail.next=t,t.prev=this.tail;t.next!==null;)t=t.next;return this.tail=t,this}remove(t){return t.prev===null?this.head=t.next:t.prev.next=t.next,t.next===null?this.tail=t.prev:t.next.prev=t.prev,this}removeSubList(t,e){return t.prev===null?this.head=e.next:t.prev.next=e.next,e.next===null?this.tail=t.prev:e.next.prev=t.prev,this}isEmpty(){return this.head===null}};var pr=class extends we{constructor(t=[]){super();let e=[],n=[],r=new xc().setFromPoints(t).faces;for(let o=0;o<r.length;o++){let a=r[o],l=a.edge;do{let c=l.head().point;e.push(c.x,c.y,c.z),n.push(a.normal.x,a.normal.y,a.normal.z),l=l.next}while(l!==a.edge)}this.setAttribute("position",new ee(e,3)),this.setAttribute("normal",new ee(n,3))}};function aa(i){return i.kind==="sphere"?new po(i.radius,32,20):i.kind==="pole"?new ar(i.radius,i.radius,i.size[2],32,1):new pr(vE(i.corners??yE(i.size),i.rounding??0))}function yE([i,t,e]){let n=[-.5,.5];return n.flatMap(s=>n.flatMap(r=>n.map(o=>[s*i,r*t,o*e])))}function vE(i,t){let e=i.map(r=>Ee(r));if(t<=0)return e;let n=new ql(t,2).getAttribute("position"),s=[];for(let r of e)for(let o=0;o<n.count;o+=1)s.push(new D().fromBufferAttribute(n,o).add(r));return s}var ME=.3,vc=class{constructor(t,e){this.group=new Be;let n=e.hairline("detected-wire"),s=e.translucent("detected-wire",.12),r=t.obstacles.filter(a=>a.known);this.known=r.map(a=>{let l=new cn(d0(a),n);return fs(a.quaternion,l.quaternion),a.position&&Ee(a.position,l.position),this.group.add(l),{mesh:l,channel:a.channel?t.channel(a.channel):null}}),this.tracks=t.tracks.map(a=>{let l=new cn(d0(a),n);return l.quaternion.copy(Xd(a.yaw)),l.visible=!1,this.group.add(l),{mesh:l,channel:t.channel(a.channel)}}),this.standing=t.standing;let o=aa({kind:"box",radius:0,size:[1,1,1]});this.box={skin:o,frame:new di(o)},this.looks={skin:s,wire:n},this.boxes=[]}update(t){if(!this.group.visible)return;for(let{mesh:n,channel:s}of this.known)s&&Ee(s.at(t),n.position);for(let{mesh:n,channel:s}of this.tracks)n.visible=s!==null&&SE(s,t),n.visible&&Ee(s.at(t),n.position);let e=0;for(let{start:n,end:s,position:r,size:o,yaw:a}of this.standing){if(t<n||s!==null&&t>=s)continue;let l=this.boxes[e]??this.newBox();l.visible=!0,Ee(r,l.position),l.scale.copy(n0(o)),l.quaternion.copy(Xd(a)),e+=1}for(let n of this.boxes.slice(e))n.visible=!1}newBox(){let t=new Be;return t.add(new _e(this.box.skin,this.looks.skin),new cn(this.box.frame,this.looks.wire)),this.boxes.push(t),this.group.add(t),t}get isEmpty(){return this.known.length===0&&this.tracks.length===0&&this.standing.length===0}},u0=24,vo=1.02;function d0(i){let{kind:t,radius:e,size:n}=i;if(t!=="sphere"&&t!=="pole")return new di(aa(i),25).scale(vo,vo,vo);let s=[],r=o=>{for(let a=0;a<u0;a+=1)for(let l of[a,a+1]){let c=2*Math.PI*l/u0;s.push(...o(Math.cos(c)*e,Math.sin(c)*e))}};if(t==="sphere"){r((o,a)=>[o,0,a]);for(let o of[0,.25,.5,.75]){let[a,l]=[Math.cos(o*Math.PI),Math.sin(o*Math.PI)];r((c,u)=>[c*a,u,c*l])}}else{let o=n[2]/2;for(let a of[-1,-.5,0,.5,1])r((l,c)=>[l,a*o,c]);for(let a=0;a<6;a+=1){let[l,c]=[Math.cos(a*Math.PI/3)*e,Math.sin(a*Math.PI/3)*e];s.push(l,-o,c,l,o,c)}}return new we().setAttribute("position",new ee(s,3)).scale(vo,vo,vo)}function SE(i,t){let e=i.t[i.rowAt(t)];return t>=e&&t-e<ME}var f0=.03,p0=16,la=class{constructor(t,e,n){this.run=t,this.palette=e,this.group=new Be,this.position=t.flown("position"),this.attitude=t.flown("attitude"),this.tension=t.channel("truth.tension");let s=n==="ghost",r=c=>s?e.translucent("series-7",.45):e.solid(c);this.payload=jd(t,r("payload"),e.hairline(s?"series-7":"background",s?1:.8)),this.group.add(this.payload);let o=t.meta.disc_radius??.3,a={body:r("uav"),heading:r("heading"),disc:e.translucent(s?"series-7":"uav",s?.2:.3),rim:e.hairline(s?"series-7":"uav")};this.uavs=[];for(let c=1;t.has(`truth.uav${c}.position`);c+=1){let u=wE(o,a);this.group.add(u),this.uavs.push({mesh:u,position:t.channel(`truth.uav${c}.position`),attitude:t.channel(`truth.uav${c}.attitude`)})}let l=new ar(f0,f0,1,8);this.attachments=(t.meta.attachments??[]).map(c=>Ee(c)),this.links=this.uavs.slice(0,this.attachments.length).map(()=>{let c=new _e(l,r("link"));return this.group.add(c),c}),this.tensionMax=this.tension?EE(this.tension):0,this.rim=Array.from({length:p0},(c,u)=>{let d=2*Math.PI*u/p0;return new D(o*Math.cos(d),0,o*Math.sin(d))}),this.corners=(t.meta.hull??[]).map(c=>Ee(c)),this.hull=new Be,this.skin=new _e(new we,e.translucent("flown",.1)),this.edges=new cn(new we,e.hairline("flown",.55)),this.hull.add(this.skin,this.edges)}update(t){if(!this.position||!this.attitude)return;Ee(this.position.at(t),this.payload.position),fs(this.attitude.at(t),this.payload.quaternion);for(let{mesh:r,position:o,attitude:a}of this.uavs)Ee(o.at(t),r.position),a&&fs(a.at(t),r.quaternion);let e=this.tension?.at(t),n=new D,s=new D;this.links.forEach((r,o)=>{n.copy(this.attachments[o]).applyQuaternion(this.payload.quaternion).add(this.payload.position),s.copy(this.uavs[o].mesh.position).sub(n);let a=s.length();r.position.copy(n).addScaledVector(s,.5),r.scale.set(1,Math.max(a,.001),1),r.quaternion.setFromUnitVectors(bE,s.normalize()),e&&r.material.color.copy(this.palette.diverging(e[o]/(this.tensionMax||1)))}),this.hull.visible&&this.updateHull()}updateHull(){let t=this.corners.map(e=>m0(e,this.payload));for(let{mesh:e}of this.uavs)t.push(...this.rim.map(n=>m0(n,e)));t.length<4||(this.skin.geometry.dispose(),this.edges.geometry.dispose(),this.skin.geometry=new pr(t),this.edges.geometry=new di(this.skin.geometry,12))}},bE=new D(0,1,0);function m0(i,t){return i.clone().applyQuaternion(t.quaternion).add(t.position)}function jd(i,t,e){let n=(i.meta.hull??[]).map(o=>Ee(o)),s=n.length>=4?new pr(n):new Vi(1,.5,1),r=new _e(s,t);return r.add(new cn(new di(s,15),e)),r}function wE(i,t){let e=new Be,n=new _e(new Gl(i,32),t.disc);n.rotation.x=-Math.PI/2;let s=new we,r=Array.from({length:32},(l,c)=>[Math.cos(c*Math.PI/16)*i,0,Math.sin(c*Math.PI/16)*i]);s.setAttribute("position",new ee(r.flat(),3));let o=new _e(new Vi(.45*i,.3*i,.7*i),t.body),a=new _e(new Wl(.22*i,.5*i,12),t.heading);return a.rotation.x=-Math.PI/2,a.position.set(0,0,-.7*i),e.add(n,new Ol(s,t.rim),o,a),e}function EE(i){let t=0;for(let e of i.series)for(let n of e)Math.abs(n)>t&&(t=Math.abs(n));return t}var Mc=class{constructor(t,e){this.position=t.meta.source==="estimate"?null:t.channel("estimate.payload.position"),this.attitude=t.channel("estimate.payload.attitude"),this.mesh=jd(t,e.translucent("estimate",.3),e.hairline("estimate")),this.mesh.visible=this.position!==null}update(t){!this.position||!this.mesh.visible||(Ee(this.position.at(t),this.mesh.position),this.attitude&&fs(this.attitude.at(t),this.mesh.quaternion))}};function g0(i){let t=[1/0,1/0,-1],e=[-1/0,-1/0,0],n=(r,o=0)=>{for(let a=0;a<3;a+=1)Number.isFinite(r[a])&&(t[a]=Math.min(t[a],r[a]-o),e[a]=Math.max(e[a],r[a]+o))},s=[i.flown("position"),i.channel("reference.position"),...i.names("obstacle.").map(r=>i.channel(r))];for(let r of s){if(!r)continue;let o=Math.max(1,Math.floor(r.t.length/500));for(let a=0;a<r.t.length;a+=o)n(r.row(a),1)}for(let r of i.obstacles)if(r.position){n(r.position,r.radius);for(let o of r.corners??[])n(r.position.map((a,l)=>a+o[l]))}for(let r of i.meta.fence?.boundary??[])for(let[o,a]of r)n([o,a,0]);return Number.isFinite(t[0])||n([0,0,0],2),t[2]-=(i.meta.link_length??3)+.5,e[2]=0,{low:t,high:e}}function _0(i,t,e){let n=new Be,{boundary:s=[],excluded:r=[]}=i.meta.fence??{},o=e.translucent("fence",.07),a=e.hairline("fence",.8);for(let u of s){let{faces:d,edges:h}=TE(u,t);n.add(new _e(d,o),new cn(h,a))}let l=e.translucent("limit",.16),c=e.hairline("limit",.9);for(let u of r){let d=new Ns;u.forEach(([f,g],_)=>_?d.lineTo(g,f):d.moveTo(g,f));let h=new Xl(d,{depth:t,bevelEnabled:!1}).rotateX(-Math.PI/2);n.add(new _e(h,l),new cn(new di(h),c))}return n}function TE(i,t){let e=[],n=[];for(let r=0;r<i.length;r+=1){let[[o,a],[l,c]]=[i[r],i[(r+1)%i.length]],u=[[a,0,-o],[c,0,-l],[c,t,-l],[a,t,-o]];for(let d of[0,1,2,0,2,3])e.push(...u[d]);for(let d of[0,1,2,3,0,3])n.push(...u[d])}let s=r=>new we().setAttribute("position",new ee(r,3));return{faces:s(e),edges:s(n)}}var AE=[1,2,5,10,20,50,100,200,500,1e3];function y0(i,t,e,n){let s=new Be,r=Math.max(t.high[0]-t.low[0],t.high[1]-t.low[1]),o=AE.find(y=>r/y<=16)??2e3,[a,l]=t.low.slice(0,2).map(y=>o*Math.floor((y-.5*o)/o)),[c,u]=t.high.slice(0,2).map(y=>o*Math.ceil((y+.5*o)/o)),d=new _e(new uo(u-l,c-a),e.flat("ground"));d.rotation.x=-Math.PI/2,d.position.set((l+u)/2,-.02,-(a+c)/2),d.renderOrder=-2,s.add(d);let h=[],f=[],g=y=>Math.abs(y/(5*o)-Math.round(y/(5*o)))<1e-6;for(let y=a;y<=c+1e-6;y+=o)(g(y)?f:h).push(l,0,-y,u,0,-y);for(let y=l;y<=u+1e-6;y+=o)(g(y)?f:h).push(y,0,-a,y,0,-c);s.add(x0(h,e.hairline("muted",.16)),x0(f,e.hairline("muted",.5)));let _=2*o,m=.35*o,p=y=>_*Math.ceil((y+.5*o)/_);for(let y=p(l);y<u;y+=_)n.add(y===0?"E 0 m":`${y}`,"mark").position.set(y,0,-a+m);for(let y=p(a);y<c;y+=_)n.add(y===0?"N 0 m":`${y}`,"mark").position.set(l-m,0,-y);let b=new _e(new Yl(CE(o)),e.flat("text"));return b.rotation.x=-Math.PI/2,b.position.set(u+.7*o,0,-(c-2*o)),s.add(b),n.add("N","north").position.set(u+.7*o,0,-(c+.5*o)),s.add(...RE(i,e)),s}function x0(i,t){let e=new we().setAttribute("position",new ee(i,3)),n=new cn(e,t);return n.renderOrder=-1,n}function CE(i){let t=[[-.06,0],[.06,0],[.06,1.3],[.28,1.3],[0,2],[-.28,1.3],[-.06,1.3]],e=new Ns;return t.forEach(([n,s],r)=>r?e.lineTo(n*i,s*i):e.moveTo(n*i,s*i)),e}function RE(i,t){let{pad:e,hull:n}=i.meta,s=i.flown("position");if(!e?.thickness||!n?.length||!s)return[];let r=[0,1].map(h=>{let f=n.map(g=>g[h]);return[Math.min(...f)-e.margin,Math.max(...f)+e.margin]}),[o,a]=r.map(([h,f])=>f-h),l=new _e(new Vi(a,e.thickness,o),t.solid("reference")),[c,u]=s.row(0),d=[c+(r[0][0]+r[0][1])/2,u+(r[1][0]+r[1][1])/2,-e.thickness/2];return Ee(d,l.position),[l]}var Sc=class{constructor(t,e,n,s){this.group=new Be,this.formation=t;let r=new ds({color:0,transparent:!0,opacity:.28,depthWrite:!1,stencilWrite:!0,stencilRef:1,stencilFunc:kg,stencilZPass:zg});n.materials.push({colour:null,material:r});let o=new Be;o.scale.y=1e-4,o.position.y=.004,this.group.add(o),this.shadows=[];let a=[t.payload,...t.uavs.map(({mesh:l})=>l),...t.links,...e.obstacles.map(({mesh:l})=>l)];for(let l of a){let c=l.clone(),u=[];c.traverse(d=>{d instanceof _e?(d.material=r,d.renderOrder=-1):(d instanceof cn||"isLine"in d)&&u.push(d)});for(let d of u)d.removeFromParent();o.add(c),this.shadows.push({body:l,shadow:c})}this.bodies=[t.payload,...e.obstacles.map(({mesh:l})=>l)],this.drops=new cn(new we().setAttribute("position",new ee(new Float32Array(6*this.bodies.length),3)),n.hairline("muted",.8)),this.drops.frustumCulled=!1,this.group.add(this.drops),this.label=s.add("","height")}update(){for(let{body:r,shadow:o}of this.shadows)o.position.copy(r.position),o.quaternion.copy(r.quaternion),o.scale.copy(r.scale);let t=this.drops.geometry.getAttribute("position");this.bodies.forEach(({position:{x:r,y:o,z:a}},l)=>{t.setXYZ(2*l,r,Math.max(o,0),a),t.setXYZ(2*l+1,r,0,a)}),t.needsUpdate=!0;let{x:e,y:n,z:s}=this.formation.payload.position;this.label.position.set(e,n/2,s),this.label.say(`${n.toFixed(1)} m up`),this.label.visible=n>1}};var Mo=8,v0={clearance:[[0,-.5,Mo,0]],contact:[[0,-.5,Mo,0]],waypoint:[[-.5,-.5,0,0]],obstacle:[[-.5,-1,0,-2],[-1,-1,-Mo,0],[0,-1,Mo,0]],height:[[0,-.5,Mo,0],[-1,-.5,-Mo,0]],north:[[-.5,-.5,0,0]],mark:[[-.5,-.5,0,0]]},M0=Object.keys(v0),PE=M0.indexOf("obstacle"),bc=class{constructor(t){this.element=V("div.scene-labels",{"aria-hidden":"true"}),t.append(this.element),this.labels=[]}add(t,e){let n=new Qd(t,e);return this.labels.push(n),this.labels.sort((s,r)=>s.rank-r.rank),this.element.append(n.element),n}place(t,e,n){let s=new D,r=[];for(let o of this.labels){s.copy(o.position).project(t);let a=s.z>-1&&s.z<1&&Math.abs(s.x)<1.1&&Math.abs(s.y)<1.1,l=(.5+.5*s.x)*e,c=(.5-.5*s.y)*n,u=a&&o.visible&&o.layer()?o.spot(l,c,r):null;o.element.hidden=!u,u&&(r.push(u),o.element.style.transform=`translate(${u[0].toFixed(1)}px, ${u[1].toFixed(1)}px)`)}}},Qd=class{constructor(t,e){this.kind=e,this.rank=M0.indexOf(e),this.text=t,this.element=V(`div.scene-label.${e}`,{hidden:!0},t),this.size=null,this.position=new D,this.visible=!0,this.layer=()=>!0}say(t){t!==this.text&&(this.text=t,this.element.textContent=t,this.size=null)}spot(t,e,n){this.size??=[this.element.offsetWidth,this.element.offsetHeight];let[s,r]=this.size,o=v0[this.kind].map(([l,c,u,d])=>{let h=t+l*s+u,f=e+c*r+d;return[h,f,h+s,f+r]});return o.find(([l,c,u,d])=>n.every(h=>u<h[0]||l>h[2]||d<h[1]||c>h[3]))??(this.rank<PE?o[0]:null)}};var wc=class{constructor(t,e,n){this.group=new Be;let s=e.solid("obstacle"),r=e.hairline("obstacle-edge",.7);this.obstacles=t.obstacles.map(a=>{let l=aa(a),c=new _e(l,s);fs(a.quaternion,c.quaternion),a.kind!=="sphere"&&c.add(new cn(new di(l,25),r)),a.position&&Ee(a.position,c.position),l.computeBoundingSphere();let u=l.boundingSphere?.radius??0,d=a.kind==="pole"?a.size[2]/2:u;this.group.add(c);let h=a.channel?t.channel(a.channel):null,f=n.add(a.known?a.name:`${a.name} (not on the map)`,"obstacle");return{mesh:c,channel:h,label:f,top:d}});let o=e.line("obstacle",1.5,{transparent:!0,opacity:.5});for(let{channel:a}of this.obstacles){if(!a)continue;let l=new Ai(o),c=Math.max(1,Math.floor(a.t.length/1e3));l.setPoints(Array.from({length:Math.ceil(a.t.length/c)},(u,d)=>a.row(d*c))),this.group.add(l)}}update(t){for(let{mesh:e,channel:n,label:s,top:r}of this.obstacles)n&&Ee(n.at(t),e.position),s.position.copy(e.position),s.position.y+=r}};var IE=["#440154","#46327e","#365c8d","#277f8e","#1fa187","#4ac16d","#a0da39","#fde725"],Ec=class{constructor(){this.materials=[],this.listeners=[],this.scheme=matchMedia("(prefers-color-scheme: dark)"),this.change=()=>this.refresh(),this.scheme.addEventListener("change",this.change)}colour(t){return new oe(Sn(t)||"#888888")}onChange(t){this.listeners.push(t),t()}refresh(){for(let{colour:t,material:e}of this.materials)t&&e.color.copy(this.colour(t));for(let t of this.listeners)t()}solid(t,e={}){return this.keep(t,new Zl(e))}translucent(t,e,n={}){let s={transparent:!0,opacity:e,depthWrite:!1,side:Mi};return this.keep(t,new ds({...s,...n}))}flat(t,e={}){return this.keep(t,new ds(e))}hairline(t,e=1){return this.keep(t,new jo({transparent:e<1,opacity:e}))}line(t,e,n={}){return this.keep(t,new ps({linewidth:e,...n}))}colouredLine(t){let e=new ps({linewidth:t,vertexColors:!0});return this.materials.push({colour:null,material:e}),e}keep(t,e){return e.color.copy(this.colour(t)),this.materials.push({colour:t,material:e}),e}sequential(t){let e=Math.min(Math.max(t,0),1);return S0(IE,this.scheme.matches?.3+.7*e:.9*e)}diverging(t){let e=this.scheme.matches?"#d8dde3":"#b8bec6",n=this.scheme.matches?["#ff7f32","#2f9be8"]:["#c04a00","#005f9e"];return S0([n[0],e,n[1]],.5+.5*Math.min(Math.max(t,-1),1))}dispose(){this.scheme.removeEventListener("change",this.change);for(let{material:t}of this.materials)t.dispose()}};function S0(i,t){let e=t*(i.length-1),n=Math.min(Math.floor(e),i.length-2);return new oe(i[n]).lerp(new oe(i[n+1]),e-n)}function b0(i,t,e){return`linear-gradient(to right, ${Array.from({length:9},(s,r)=>`#${i(t+(e-t)*r/8).getHexString()}`).join(", ")})`}var LE=560,Tc=class{constructor(t,e,n,s,r){this.onCamera=r;let o=[["free","overview"],["follow","follow"],["top","top"]];this.buttons=o.map(([a,l])=>V("button",{type:"button","aria-pressed":"false","data-camera":a,onclick:()=>r(a)},l)),this.cameras=V("div.scene-cameras",{role:"group","aria-label":"camera"},...this.buttons),this.key=V("details.scene-key",{open:t.clientWidth>=LE},V("summary",{},"Key"),V("div",{},...e.map(DE),...n.map(a=>UE(a,s)))),t.append(this.cameras,this.key)}choose(t){for(let e of this.buttons)e.setAttribute("aria-pressed",String(e.dataset.camera===t))}dispose(){this.cameras.remove(),this.key.remove()}};function DE({name:i,colour:t,look:e,shown:n,show:s}){let r=V(`span.scene-swatch.${e}`);if(r.style.setProperty("--colour",`var(--${t})`),!s)return V("div.scene-row",{},V("span.scene-no-box"),r,i);let o=V("input",{type:"checkbox",checked:n,onchange:()=>s(o.checked)});return V("label.scene-row",{},o,r,i)}function UE({name:i,from:t,to:e,scale:n,low:s,high:r},o){let a=V("div.scene-bar");return o.onChange(()=>{a.style.background=b0(n,s,r)}),V("div.scene-legend",{},i,a,V("div.scene-ends",{},V("span",{},t),V("span",{},e)))}var NE=4e3,FE=.5;function w0(i,t){let e=new Ai(t.line("reference",1.5)),n=i.channel("reference.position");return n&&e.setPoints(T0(n,3e3).map(s=>n.row(s))),e}var ca=class{constructor(t,e,n){this.palette=e,this.line=new Ai(n?e.line(n,2):e.colouredLine(3.5));let s=t.flown("position"),r=t.flown("velocity"),o=s?T0(s,NE):[];this.times=o.map(a=>s.t[a]),this.points=o.map(a=>s.row(a)),this.speeds=o.map(a=>r?Math.hypot(...r.row(a)):0),this.fastest=Math.max(.5,Math.ceil(2*Math.max(0,...this.speeds.filter(Number.isFinite)))/2),n?this.line.setPoints(this.points):e.onChange(()=>this.paint())}paint(){this.line.setPoints(this.points,this.speeds.map(t=>this.palette.sequential(t/this.fastest))),this.update(this.time??0)}update(t){this.time=t;let e=0,n=this.times.length;for(;e<n;){let s=e+n>>1;this.times[s]<=t?e=s+1:n=s}this.line.showFirst(Math.max(e-1,0))}},Ac=class{constructor(t,e){this.group=new Be,this.plans=[{channel:t.channel("horizon.plan"),line:new Ai(e.line("plan",3))},{channel:t.channel("horizon.stop"),line:new Ai(e.line("stop",3,{dashed:!0,dashSize:.15,gapSize:.1}))}];for(let{line:n}of this.plans)this.group.add(n)}update(t){if(this.group.visible)for(let{channel:e,line:n}of this.plans){if(!e)continue;let s=t-e.t[e.rowAt(t)];n.setPoints(s>=0&&s<FE?e.path(t):[])}}get isEmpty(){return this.plans.every(({channel:t})=>t===null)}};function E0(i,t){let e=i.flown("position"),n=i.events.filter(r=>r.kind==="waypoint");return(i.meta.waypoints??(e?n.map(r=>e.at(r.start)):[])).map((r,o)=>{let a=t.add(`${o+1}`,"waypoint");return Ee(r,a.position),a})}function T0(i,t){let e=i.t.length,n=Math.max(1,Math.ceil(e/t)),s=Array.from({length:Math.ceil(e/n)},(r,o)=>o*n);return s.length&&s[s.length-1]!==e-1&&s.push(e-1),s.filter(r=>i.series.every(o=>Number.isFinite(o[r])))}var OE=.001,Cc=class{constructor(t,e){this.margin=e.meta.margin,this.clearance=e.channel("clearance.nearest"),this.position=e.flown("position"),this.velocity=e.flown("velocity"),this.figures={clearance:V("b"),height:V("b"),speed:V("b")};let n=s=>V("div",{},V("span",{},s),this.figures[s]);this.element=V("div.scene-readout",{},this.clearance&&n("clearance"),n("height"),n("speed")),t.append(this.element)}update(t){let{clearance:e,height:n,speed:s}=this.figures;this.position&&(n.textContent=`${(-this.position.at(t)[2]).toFixed(1)} m`),this.velocity&&(s.textContent=`${Math.hypot(...this.velocity.at(t)).toFixed(1)} m/s`);let r=this.clearance?this.clearance.at(t)[0]:NaN,o=r<=OE;e.textContent=o?"contact":Number.isFinite(r)?`${r.toFixed(2)} m`:"–",e.className=o?"contact":r<this.margin?"near":""}dispose(){this.element.remove()}};var BE=60,Rc=class{constructor(t,e,n,s){this.element=t,this.run=e;let r=V("canvas.scene-canvas",{role:"img","aria-label":"the flight in three dimensions"});this.renderer=new Ll({canvas:r,antialias:!0,stencil:!0}),t.append(r),this.palette=new Ec,this.labels=new bc(t),this.world=new Dl,this.time=n.time,this.frame=0,this.isStale=!0,this.build(e,s);let o=g0(e);this.world.add(y0(e,o,this.palette,this.labels),_0(e,-o.low[2],this.palette));let a=(e.meta.link_length??3)+2;this.cameras=new cc(r,o,a,()=>this.invalidate()),this.panel=new Tc(t,this.parts(s),this.scales(),this.palette,c=>this.setCamera(c)),this.readout=new Cc(t,e);let l=Math.max(o.high[0]-o.low[0],o.high[1]-o.low[1])>BE;this.update(),this.resize(),this.setCamera(l?"follow":"free"),this.observer=new ResizeObserver(()=>this.resize()),this.observer.observe(t),this.palette.onChange(()=>{this.world.background=this.palette.colour("sky"),this.stale()}),n.onChange(()=>{n.time!==this.time&&(this.time=n.time,this.stale())})}build(t,e){let{palette:n,labels:s,world:r}=this,o=new Ql(new oe(16777215),1.7);o.position.set(-.5,1,.7),r.add(o,new jl(new oe(16777215),new oe(11580602),1.9)),this.formation=new la(t,n,"flown"),this.ghost=e?new la(e,n,"ghost"):null,this.ghostTrail=e?new ca(e,n,"series-7"):null,this.obstacles=new wc(t,n,s),this.heights=new Sc(this.formation,this.obstacles,n,s),this.estimate=new Mc(t,n),this.detected=new vc(t,n),this.reference=w0(t,n),this.trail=new ca(t,n),this.plans=new Ac(t,n),this.clearance=new mc(t,n,s),this.waypoints=E0(t,s),r.add(this.formation.group,this.formation.hull,this.obstacles.group,this.heights.group,this.estimate.mesh,this.detected.group,this.reference,this.trail.line,this.plans.group,this.clearance.group),this.ghost&&this.ghostTrail&&r.add(this.ghost.group,this.ghostTrail.line)}parts(t){let{run:e}=this,n=(...r)=>o=>{for(let a of r)a.visible=o;this.stale()},s=[{name:"payload",colour:"payload",look:"area",shown:!0,show:null},e.obstacles.length>0&&{name:"obstacles",colour:"obstacle",look:"area",shown:!0,show:n(this.obstacles.group)},{name:"formation hull",colour:"flown",look:"glass",shown:!0,show:n(this.formation.hull)},this.estimate.position&&{name:"estimate",colour:"estimate",look:"glass",shown:!0,show:n(this.estimate.mesh)},!this.detected.isEmpty&&{name:"ground’s map",colour:"detected-wire",look:"wire",shown:!0,show:n(this.detected.group)},e.has("reference.position")&&{name:"reference",colour:"reference",look:"thin",shown:!0,show:n(this.reference)},e.has("horizon.plan")&&{name:"plan",colour:"plan",look:"line",shown:!0,show:n(this.plans.plans[0].line)},e.has("horizon.stop")&&{name:"stop plan",colour:"stop",look:"dashed",shown:!0,show:n(this.plans.plans[1].line)},{name:"flown path",colour:"flown",look:"line",shown:!0,show:n(this.trail.line)},{name:"heights",colour:"muted",look:"thin",shown:!0,show:n(this.heights.group)},t&&{name:`other run: ${t.meta.run}`,colour:"series-7",look:"glass",shown:!0,show:n(this.ghost.group,this.ghostTrail.line)}];if(e.clearance){let r=o=>{this.clearance.always=o,this.stale()};s.push({name:"least clearance, always",colour:"clearance",look:"line",shown:!1,show:r})}return s.filter(r=>!!r)}scales(){let{palette:t}=this,e=[{name:"flown path: speed (m/s)",from:"0",to:`${this.trail.fastest}`,scale:n=>t.sequential(n),low:0,high:1}];if(this.formation.tension){let n=this.formation.tensionMax.toFixed(0);e.push({name:"links: force (N)",from:`−${n} compression`,to:`tension ${n}`,scale:s=>t.diverging(s),low:-1,high:1})}return e}setCamera(t){this.cameras.set(t),this.panel.choose(t),this.invalidate()}resize(){let{clientWidth:t,clientHeight:e}=this.element;!t||!e||(this.width=t,this.height=e,this.renderer.setPixelRatio(Math.min(window.devicePixelRatio,2)),this.renderer.setSize(t,e,!1),this.cameras.resize(t,e),this.draw())}project(t){let e=this.cameras.current;e.updateMatrixWorld();let{x:n,y:s}=Ee(t).project(e);return[(.5+.5*n)*(this.width??0),(.5-.5*s)*(this.height??0)]}payloadPixel(){return this.isStale&&this.update(),this.project(this.run.flown("position").at(this.time))}renderAt(t){this.time=t,this.isStale=!0,this.draw()}stale(){this.isStale=!0,this.invalidate()}invalidate(){this.frame||(this.frame=requestAnimationFrame(()=>this.draw()))}update(){this.isStale=!1;let{time:t}=this;this.formation.update(t),this.ghost?.update(t),this.ghostTrail?.update(t),this.obstacles.update(t),this.heights.update(),this.estimate.update(t),this.detected.update(t),this.trail.update(t),this.plans.update(t),this.clearance.update(t),this.readout.update(t),this.cameras.follow(this.formation.payload.position)}draw(){cancelAnimationFrame(this.frame),this.isStale&&this.update(),this.renderer.render(this.world,this.cameras.current),this.labels.place(this.cameras.current,this.width??1,this.height??1),cancelAnimationFrame(this.frame),this.frame=0}dispose(){cancelAnimationFrame(this.frame),this.observer.disconnect(),this.cameras.dispose(),this.panel.dispose(),this.readout.dispose(),this.labels.dispose(),this.world.traverse(t=>t.geometry?.dispose()),this.palette.dispose(),this.renderer.dispose(),this.renderer.domElement.remove()}};var zE=[{name:"phase",kinds:["phase","waypoint"],title:"phases"},{name:"fault",kinds:["fault"],title:"faults"},{name:"alarm",kinds:["isolation","mode","alarm"],title:"alarms"}],A0="M3 1v12l9-6z",kE="M3 1h3v12H3zM8 1h3v12H8z",VE="M2 1h2v12H2zM12 1v12L5 7z",HE="M10 1h2v12h-2zM2 1v12l7-6z";function tf(i){let t=document.createElementNS("http://www.w3.org/2000/svg","svg");t.setAttribute("viewBox","0 0 14 14"),t.setAttribute("class","icon");let e=document.createElementNS("http://www.w3.org/2000/svg","path");return e.setAttribute("d",i),t.append(e),t}function C0(i,t){let{begin:e,end:n}=i.meta,s=Math.max(n-e,1e-9),r=f=>`${100*(Math.min(Math.max(f,e),n)-e)/s}%`,o=zE.map(({name:f,kinds:g,title:_})=>{let m=i.events.filter(b=>g.includes(b.kind));if(!m.length)return null;let p=m.map(b=>{let y=b.end===null&&!["isolation","fault"].includes(b.kind),v=y?b.start:b.end??n;return V(`button.band.${b.kind}${y?".instant":""}`,{type:"button",title:GE(b),tabIndex:-1,style:{left:r(b.start),width:y?"":`calc(${r(v)} - ${r(b.start)})`},onclick:()=>t.set(b.start)},b.kind==="phase"&&(v-b.start)/s>.008*b.text.length?b.text:"")});return V("div.lane",{},V("span.lane-name",{},_),V(`div.lane-track.${f}`,{},...p))}),a=V("input",{type:"range",id:"slider",min:String(e),max:String(n),step:"any","aria-label":"time (s)",oninput:()=>t.set(Number(a.value))}),l=(f,g,_)=>V("button",{type:"button","aria-label":g,title:g,onclick:_},f),c=l(tf(A0),"play or pause (space)",()=>t.toggle()),u=V("span.speed",{}),d=V("output.time",{id:"time"}),h=V("div.controls",{},l(tf(VE),"to the start (home)",()=>t.set(e)),c,l(tf(HE),"to the end (end)",()=>t.set(n)),l("−","slower (-)",()=>t.changeSpeed(-1)),u,l("+","faster (+)",()=>t.changeSpeed(1)),d,V("span.keys",{},"keys: space, ← →, + −, home, end"));return t.onChange(()=>{a.value=String(t.time),c.firstElementChild.firstElementChild.setAttribute("d",t.playing?kE:A0),u.textContent=`${t.speed}×`,d.textContent=`${t.time.toFixed(2)} s of ${n.toFixed(1)} s`}),WE(i,t),V("section",{id:"timeline"},...o,V("div.lane",{},V("span.lane-name",{},"time"),a),h)}function GE(i){return`${i.end===null?`${i.start.toFixed(2)} s`:`${i.start.toFixed(2)} to ${i.end.toFixed(2)} s`}: ${i.source==="team"?"":`${i.source}: `}${i.text}`}function WE(i,t){let{t:e}=i.flown("position"),n=r=>{let o=0,a=e.length;for(;a-o>1;){let l=o+a>>1;e[l]<=t.time+1e-9?o=l:a=l}t.pause(),t.set(e[Math.min(Math.max(o+r,0),e.length-1)])},s={" ":()=>t.toggle(),ArrowRight:r=>r.shiftKey?t.set(t.time+1):n(1),ArrowLeft:r=>r.shiftKey?t.set(t.time-1):n(-1),"+":()=>t.changeSpeed(1),"=":()=>t.changeSpeed(1),"-":()=>t.changeSpeed(-1),Home:()=>t.set(t.begin),End:()=>t.set(t.end)};document.addEventListener("keydown",r=>{let o=r.target;if(!(o instanceof HTMLInputElement&&o.type!=="range"||r.ctrlKey||r.metaKey||r.altKey||!(r.key in s))){if(r.key===" "&&o.matches("button, summary")){if(o.matches(":focus-visible"))return;o.blur()}r.preventDefault(),r.stopPropagation(),s[r.key](r)}},{capture:!0})}var ef=document.getElementById("page");async function XE(){let[i,t]=await Af(document),e=new ya(i.meta.begin,i.meta.end),n=V("section",{id:"scene","aria-label":"scene"}),s=V("section",{id:"plots"});ef.replaceChildren(V("header",{},Of(i)),V("div.top",{},Bf(i,e),n),C0(i,e),kf(i,t)??"",Cf(i,e),s);let r=null;try{r=new Rc(n,i,e,t)}catch(o){console.warn(o),n.replaceChildren(V("p.failed",{},`The scene cannot be shown: ${o.message} (it needs WebGL).`)),n.classList.add("absent")}Object.assign(window,{report:{run:i,ghost:t,clock:e,scene:r,plots:new Oa(s,i,e,t)}}),e.set(i.clearance?.time??i.meta.begin)}async function qE(i){let t=JSON.parse(i.textContent??"");ef.replaceChildren(...bf(t)),Object.assign(window,{report:{campaign:t}})}var R0=document.querySelector("script.campaign");(R0?qE(R0):XE()).catch(i=>{throw ef.replaceChildren(V("p.failed",{},`The page cannot be shown: ${i.message}`)),i});

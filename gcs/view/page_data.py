@@ -20,7 +20,7 @@ from gcs.record.link_figures import link_figures
 from gcs.record.reader import Table
 from gcs.record.run_data import RunData
 from gcs.record.run_folder import to_json
-from gcs.record.tables import ESTIMATE, PLAN, STEPS
+from gcs.record.tables import ESTIMATE, FORCES, HORIZON, INNOVATIONS, PLAN, STEPS
 from gcs.record.witness import least_clearance
 from gcs.view.page_events import events
 from idc_controller.arrays import Array
@@ -34,7 +34,6 @@ RATE_LONG, LONG = 25.0, 120.0
 _SERIES_MAX = 6
 """Barriers whose clearance is shown one by one: those that come nearest."""
 _MISSING = 65535
-FORCES, HORIZON, INNOVATIONS = "forces.csv", "horizon.csv", "innovations.csv"
 _XYZ, _QUATERNION = ("x_m", "y_m", "z_m"), ("qw", "qx", "qy", "qz")
 _NED = ("north", "east", "down")
 
@@ -201,8 +200,8 @@ class PageData:
         for kind in np.unique(kinds):
             rows = table[kinds == kind]
             at, moment = np.unique(rows["time_s"], return_inverse=True)
-            step = rows["step"].astype(int) - int(rows["step"].min())
-            paths = np.full((len(at), int(step.max()) + 1, 3), np.nan)
+            steps, step = np.unique(rows["step"], return_inverse=True)
+            paths = np.full((len(at), len(steps), 3), np.nan)
             paths[moment, step] = stack(rows, _XYZ)
             self._add(f"horizon.{kind}", at, _NED, "m", paths)
 

@@ -14,9 +14,7 @@ from gcs.record.faults import FAULTS_FILE
 from gcs.record.modes import OFFBOARD
 from gcs.record.reader import read_json
 from gcs.record.run_data import RunData
-from gcs.record.tables import ALARMS, MODES, PHASES
-
-INNOVATIONS = "innovations.csv"
+from gcs.record.tables import ALARMS, INNOVATIONS, MODES, PHASES
 
 Event = dict[str, Any]
 

@@ -178,11 +178,12 @@ def test_clearance_is_that_of_the_time_in_the_air(folder):
 def test_run_without_truth_is_shown_by_the_estimate(folder):
     with TableWriter(folder / "estimate.csv", ESTIMATE_COLUMNS) as table:
         for k in range(20):
-            table.write([k / 20.0, k / 20.0, 0.0, -5.0, 1, 0, 0, 0, *[0.0] * 6, 0.1, 0.2, 0.3])
+            table.write([k / 20.0, k / 20.0, 0.0, -5.0, 1, 0, 0, 0, *[0.0] * 6, 0.1, 0.2, 0.3, *[0.01] * 15])
     (decoded,) = page_of(write_report(read_run(folder)))
     assert decoded.header["meta"]["source"] == "estimate"
     assert "truth.payload.position" not in decoded.header["channels"]
     assert decoded.channel("estimate.payload.position")[1][-1] == pytest.approx([0.95, 0.0, -5.0], abs=1e-3)
+    assert decoded.channel("estimate.payload.position_sd")[1][-1] == pytest.approx([0.01] * 3, abs=1e-3)
     assert decoded.header["clearance"] is None
 
 

@@ -14,6 +14,7 @@ import { angles, columnsAt, distance, intervals, resample, tracking } from './de
 const COLOURS = ['series-1', 'series-2', 'series-3', 'series-4', 'series-5', 'series-6', 'series-7', 'series-8'];
 const DASHES = [[], [8, 4], [2, 3]];
 const SHOWN = 8; // test ratios: those with the largest values
+const RATIO_MAX = 5; // above, at touchdown for example, they are cut off
 
 const up = (values) => values.map((value) => (value === null ? null : -value));
 
@@ -248,7 +249,11 @@ function tests(run) {
   return {
     title: 'Innovation tests',
     note: `Above 1 a measurement is rejected.${more > 0 ? ` Shown are the ${SHOWN} sources with the largest ratios; ${more} others stayed below.` : ''}`,
-    figures: [{ title: 'Test ratio', unit: '1', t, series, lines, zero: true, digits: 2 }],
+    figures: [
+      shown[0].most > RATIO_MAX
+        ? { title: `Test ratio, up to ${RATIO_MAX}`, unit: '1', t, series, lines, digits: 2, range: [0, RATIO_MAX] }
+        : { title: 'Test ratio', unit: '1', t, series, lines, zero: true, digits: 2 },
+    ],
   };
 }
 

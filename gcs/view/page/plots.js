@@ -207,7 +207,7 @@ function rangeY(figure, low, high) {
   if (low === null || high === null) return [0, 1];
   const [bottom, top] = figure.zero ? [Math.min(low, 0), Math.max(high, 0)] : [low, high];
   const room = (top - bottom || Math.abs(top) || 1) * 0.06;
-  return [figure.zero && bottom === 0 ? 0 : bottom - room, top + room];
+  return [figure.zero && bottom === 0 ? 0 : bottom - room, top + 2 * room]; // above: strips of modes and isolations
 }
 
 function nearest(t, time) {
