@@ -22,6 +22,8 @@ import { Readout } from './scene/readout.js';
 /** @typedef {import('./data.js').Run} Run */
 /** @typedef {'free'|'follow'|'top'} Kind */
 
+/** @type {Record<string, number[]>} steps right and up */
+const TURNS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 const LARGE = 60; // m: in a wider flight the formation would be too small in the overview
 
 export class Scene {
@@ -34,9 +36,10 @@ export class Scene {
   constructor(element, run, clock, ghost) {
     this.element = element;
     this.run = run;
-    const canvas = h('canvas.scene-canvas', { role: 'img', 'aria-label': 'the flight in three dimensions' });
+    const canvas = h('canvas.scene-canvas', { role: 'img', 'aria-label': 'the flight in three dimensions; arrow keys turn it', tabIndex: 0 });
     this.renderer = new WebGLRenderer({ canvas, antialias: true, stencil: true });
     element.append(canvas);
+    canvas.addEventListener('keydown', (event) => this.turn(event));
     this.palette = new Palette();
     this.labels = new Labels(element);
     this.world = new World();
@@ -45,7 +48,8 @@ export class Scene {
     this.isStale = true;
     this.build(run, ghost);
     const box = extent(run);
-    this.world.add(ground(run, box, this.palette, this.labels), fence(run, -box.low[2], this.palette));
+    this.fence = fence(run, -box.low[2], this.palette, this.labels);
+    this.world.add(ground(run, box, this.palette, this.labels), this.fence);
     const size = (run.meta.link_length ?? 3) + 2;
     this.cameras = new Cameras(canvas, box, size, besideClearance(run), () => this.invalidate());
     this.panel = new Panel(element, this.parts(ghost), this.scales(), this.palette, {
@@ -106,15 +110,17 @@ export class Scene {
     /** @type {(import('./scene/panel.js').Part|null|false|undefined)[]} */
     const parts = [
       { name: 'payload', colour: 'payload', look: 'area', shown: true, show: null },
-      run.obstacles.length > 0 && { name: 'obstacles', colour: 'obstacle', look: 'area', shown: true, show: toggle(this.obstacles.group) },
+      this.obstacles.obstacles.length > 0 && { name: 'obstacles', colour: 'obstacle', look: 'area', shown: true, show: toggle(this.obstacles.group) },
       { name: 'formation hull', colour: 'flown', look: 'glass', shown: true, show: toggle(this.formation.hull) },
       this.estimate.position && { name: 'estimate', colour: 'estimate', look: 'glass', shown: true, show: toggle(this.estimate.mesh) },
+      this.fence.children.length > 0 && { name: 'fence', colour: 'limit', look: 'glass', shown: true, show: toggle(this.fence) },
       !this.detected.isEmpty && { name: 'ground’s map', colour: 'detected-wire', look: 'wire', shown: true, show: toggle(this.detected.group) },
       run.has('reference.position') && { name: 'reference', colour: 'reference', look: 'thin', shown: true, show: toggle(this.reference) },
       run.has('horizon.plan') && { name: 'plan', colour: 'plan', look: 'line', shown: true, show: toggle(this.plans.plans[0].line) },
       run.has('horizon.stop') && { name: 'stop plan', colour: 'stop', look: 'dashed', shown: true, show: toggle(this.plans.plans[1].line) },
       { name: 'flown path', colour: 'flown', look: 'line', shown: true, show: toggle(this.trail.line) },
       { name: 'shadows and heights', colour: 'muted', look: 'thin', shown: true, show: toggle(this.heights.group) },
+      { name: 'names and numbers', colour: 'text', look: 'word', shown: true, show: toggle(this.labels) },
       ghost && { name: `other run: ${ghost.meta.run}`, colour: 'series-7', look: 'glass', shown: true, show: toggle(this.ghost.group, this.ghostTrail.line) },
     ];
     if (run.clearance) {
@@ -134,8 +140,9 @@ export class Scene {
       { name: 'flown path: speed (m/s)', from: '0', to: `${this.trail.fastest}`, scale: (/** @type {number} */ x) => palette.sequential(x), low: 0, high: 1 },
     ];
     if (this.formation.tension) {
-      const most = this.formation.tensionMax.toFixed(0);
-      scales.push({ name: 'links: force (N)', from: `−${most} compression`, to: `tension ${most}`, scale: (x) => palette.diverging(x), low: -1, high: 1 });
+      const { middle, reach } = this.formation.force;
+      const [from, between, to] = [middle - reach, middle, middle + reach].map((force) => force.toFixed(1).replace('-', '−'));
+      scales.push({ name: 'links: tension (N)', from, between, to, scale: (x) => palette.diverging(x), low: -1, high: 1 });
     }
     return scales;
   }
@@ -145,6 +152,15 @@ export class Scene {
     this.cameras.set(kind);
     this.panel.choose(kind);
     this.invalidate();
+  }
+
+  /** Turn by the arrow keys, which then do not move the time. @param {KeyboardEvent} event */
+  turn(event) {
+    const turn = TURNS[event.key];
+    if (!turn || event.ctrlKey || event.altKey || event.metaKey) return;
+    event.preventDefault();
+    event.stopPropagation();
+    this.cameras.turn(turn[0], turn[1]);
   }
 
   /** Fit the canvas to the element; called by itself when the element's size changes. */
@@ -219,7 +235,7 @@ export class Scene {
     cancelAnimationFrame(this.frame);
     if (this.isStale) this.update();
     this.renderer.render(this.world, this.cameras.current);
-    this.labels.place(this.cameras.current, this.width ?? 1, this.height ?? 1);
+    this.labels.place(this.cameras.current, this.width ?? 1, this.height ?? 1, this.clearance.ends);
     // Only now: the controls of the camera ask for a further frame when they are moved along.
     cancelAnimationFrame(this.frame);
     this.frame = 0;

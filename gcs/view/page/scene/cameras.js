@@ -1,6 +1,6 @@
 /** Three ways to look at the scene: free, with the payload, and from above. */
 
-import { MOUSE, OrthographicCamera, PerspectiveCamera, TOUCH, Vector3 } from 'three';
+import { MOUSE, OrthographicCamera, PerspectiveCamera, Spherical, TOUCH, Vector3 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { toScene } from './frames.js';
 
@@ -8,7 +8,8 @@ import { toScene } from './frames.js';
 
 const FIELD = 40; // deg, of view, up and down
 const FROM = new Vector3(-0.45, 0.5, 1).normalize(); // where the camera first is: south, a bit west, above
-const FILLED = 0.9; // of the picture, at most, by the flight
+const TURN = Math.PI / 36; // by a key
+const FILLED = 0.94; // of the picture, at most, by the flight
 
 export class Cameras {
   /**
@@ -82,22 +83,28 @@ export class Cameras {
     }
   }
 
-  /** Look at the whole flight. */
+  /** Look at the whole flight: the corners of its box fill the picture. */
   overview() {
-    this.orbit.target.copy(this.middle);
     const { perspective } = this;
-    perspective.position.copy(this.middle).add(FROM);
-    perspective.lookAt(this.middle);
+    const { target } = this.orbit;
+    target.copy(this.middle);
+    perspective.position.copy(target).add(FROM);
+    perspective.lookAt(target);
     perspective.updateMatrixWorld();
     const [right, up, back] = [0, 1, 2].map((k) => new Vector3().setFromMatrixColumn(perspective.matrixWorld, k));
     const slope = FILLED * Math.tan((FIELD * Math.PI) / 360);
     let distance = 0;
-    for (const corner of this.corners) {
-      const from = corner.clone().sub(this.middle);
-      const aside = Math.max(Math.abs(from.dot(right)) / (perspective.aspect * this.seen), Math.abs(from.dot(up)));
-      distance = Math.max(distance, from.dot(back) + aside / slope);
+    // What is near fills more of the picture than what is far, so the target moves until both sides fill as much.
+    for (let pass = 0; pass < 4; pass += 1) {
+      const seen = this.corners.map((corner) => corner.clone().sub(target));
+      const reach = (/** @type {Vector3} */ from) => Math.max(Math.abs(from.dot(right)) / (perspective.aspect * this.seen), Math.abs(from.dot(up)));
+      distance = Math.max(...seen.map((from) => from.dot(back) + reach(from) / slope));
+      for (const axis of [right, up]) {
+        const sides = seen.map((from) => from.dot(axis) / (distance - from.dot(back)));
+        target.addScaledVector(axis, (distance * (Math.min(...sides) + Math.max(...sides))) / 2);
+      }
     }
-    perspective.position.copy(this.middle).addScaledVector(FROM, distance);
+    perspective.position.copy(target).addScaledVector(FROM, distance);
     this.orbit.update();
   }
 
@@ -141,6 +148,27 @@ export class Cameras {
       this.perspective.position.sub(target).multiplyScalar(factor).add(target);
       this.orbit.update();
     }
+  }
+
+  /**
+   * Go around the target, or, from above, along.
+   * @param {number} right steps
+   * @param {number} up steps
+   */
+  turn(right, up) {
+    const { orbit, pan } = this;
+    if (this.kind === 'top') {
+      const step = 0.05 * (this.above.top - this.above.bottom) / this.above.zoom;
+      for (const place of [pan.target, this.above.position]) place.add(new Vector3(right * step, 0, -up * step));
+      pan.update();
+      return;
+    }
+    const offset = this.perspective.position.clone().sub(orbit.target);
+    const place = new Spherical().setFromVector3(offset);
+    place.theta += right * TURN;
+    place.phi = Math.min(Math.max(place.phi - up * TURN, TURN), orbit.maxPolarAngle);
+    this.perspective.position.setFromSpherical(place).add(orbit.target);
+    orbit.update();
   }
 
   dispose() {

@@ -16,6 +16,8 @@ export class Clearance {
     this.group = new Group();
     this.always = false;
     this.found = run.clearance;
+    /** @type {import('three').Vector3[]} its two points, while they are shown */
+    this.ends = [];
     this.label = null;
     if (!this.found) return;
     const { min, obstacle, point_hull: ours, point_obstacle: theirs } = this.found;
@@ -33,6 +35,7 @@ export class Clearance {
     this.group.add(line, ...dots);
     for (const part of this.group.children) part.renderOrder = 10;
     this.label = labels.add(min > 0 ? `${min.toFixed(2)} m to ${obstacle}` : `touched ${obstacle}`, min > 0 ? 'clearance' : 'contact');
+    this.points = [toScene(ours), toScene(theirs)];
     this.label.position.copy(toScene(ours)).add(toScene(theirs)).multiplyScalar(0.5);
   }
 
@@ -40,6 +43,7 @@ export class Clearance {
   update(time) {
     const shown = this.found !== null && (this.always || Math.abs(time - this.found.time) <= AROUND);
     this.group.visible = shown;
+    this.ends = shown ? (this.points ?? []) : [];
     if (this.label) this.label.visible = shown;
   }
 }

@@ -1,6 +1,7 @@
 /** What was on the ground station's map at a time: known and tracked obstacles, and boxes about what stands. */
 
 import { BufferGeometry, EdgesGeometry, Float32BufferAttribute, Group, LineSegments, Mesh } from 'three';
+import { isZone } from './fence.js';
 import { attitudeToScene, sizeToScene, toScene, yawToScene } from './frames.js';
 import { shapeGeometry } from './shapes.js';
 
@@ -15,7 +16,7 @@ export class Detected {
     this.group = new Group();
     const wire = palette.hairline('detected-wire');
     const skin = palette.translucent('detected-wire', 0.12);
-    const known = run.obstacles.filter((/** @type {any} */ obstacle) => obstacle.known);
+    const known = run.obstacles.filter((/** @type {any} */ obstacle) => obstacle.known && !isZone(obstacle));
     this.known = known.map((/** @type {any} */ obstacle) => {
       const mesh = new LineSegments(frame(obstacle), wire);
       attitudeToScene(obstacle.quaternion, mesh.quaternion);

@@ -1,13 +1,24 @@
-/** The fence: the boundary that holds the flight, and what it must not enter, as translucent walls. */
+/** The fence: the boundary that holds the flight, and the zones that it must not enter, as translucent walls. */
 
-import { BufferGeometry, EdgesGeometry, ExtrudeGeometry, Float32BufferAttribute, Group, LineSegments, Mesh, Shape } from 'three';
+import {
+  Box3, BufferGeometry, CylinderGeometry, EdgesGeometry, ExtrudeGeometry, Float32BufferAttribute, Group, LineSegments, Mesh, Shape, Vector3,
+} from 'three';
+
+/**
+ * Whether an obstacle is a zone of the fence: such are as high as no flight is, and drawn here, up to the flight's height.
+ * @param {{name: string}} obstacle
+ */
+export function isZone({ name }) {
+  return /^fence (circle|polygon) \d+/.test(name);
+}
 
 /**
  * @param {import('../data.js').Run} run
  * @param {number} height of the walls (m)
  * @param {import('./palette.js').Palette} palette
+ * @param {import('./labels.js').Labels} labels
  */
-export function fence(run, height, palette) {
+export function fence(run, height, palette, labels) {
   const group = new Group();
   const { boundary = [], excluded = [] } = run.meta.fence ?? {};
   const wall = palette.translucent('fence', 0.07);
@@ -16,20 +27,39 @@ export function fence(run, height, palette) {
     const { faces, edges } = walls(ring, height);
     group.add(new Mesh(faces, wall), new LineSegments(edges, edge));
   }
-  const block = palette.translucent('limit', 0.16);
-  const blockEdge = palette.hairline('limit', 0.9);
-  for (const ring of excluded) {
-    const shape = new Shape();
-    ring.forEach((/** @type {number[]} */ [north, east], /** @type {number} */ i) => (i ? shape.lineTo(east, north) : shape.moveTo(east, north)));
-    const geometry = new ExtrudeGeometry(shape, { depth: height, bevelEnabled: false }).rotateX(-Math.PI / 2);
-    group.add(new Mesh(geometry, block), new LineSegments(new EdgesGeometry(geometry), blockEdge));
+  const inside = palette.translucent('limit', 0.14);
+  const insideEdge = palette.hairline('limit', 0.9);
+  const circles = run.obstacles.filter((/** @type {any} */ obstacle) => isZone(obstacle) && obstacle.kind === 'pole');
+  for (const geometry of [
+    ...excluded.map((/** @type {number[][]} */ ring) => block(ring, height)),
+    ...circles.map((/** @type {any} */ circle) => column(circle, height)),
+  ]) {
+    group.add(new Mesh(geometry, inside), new LineSegments(new EdgesGeometry(geometry, 30), insideEdge));
+    const label = labels.add('no-fly zone', 'obstacle');
+    const middle = new Box3().setFromBufferAttribute(geometry.getAttribute('position')).getCenter(new Vector3());
+    label.position.copy(middle).setY(height);
+    label.layer = () => group.visible;
   }
   return group;
 }
 
-/** Upright walls along a ring, without a roof. @param {number[][]} ring north, east @param {number} height */
+/** What is over a ring, with a roof. @param {number[][]} ring north, east (m) @param {number} height m */
+function block(ring, height) {
+  const shape = new Shape();
+  ring.forEach(([north, east], i) => (i ? shape.lineTo(east, north) : shape.moveTo(east, north)));
+  return new ExtrudeGeometry(shape, { depth: height, bevelEnabled: false }).rotateX(-Math.PI / 2);
+}
+
+/** What is over a circle. @param {{position: number[], radius: number}} circle @param {number} height m */
+function column({ position: [north, east], radius }, height) {
+  return new CylinderGeometry(radius, radius, height, 48).translate(east, height / 2, -north);
+}
+
+/** Upright walls along a ring, without a roof. @param {number[][]} ring north, east (m) @param {number} height m */
 function walls(ring, height) {
+  /** @type {number[]} */
   const faces = [];
+  /** @type {number[]} */
   const edges = [];
   for (let i = 0; i < ring.length; i += 1) {
     const [[n0, e0], [n1, e1]] = [ring[i], ring[(i + 1) % ring.length]];
@@ -37,6 +67,7 @@ function walls(ring, height) {
     for (const k of [0, 1, 2, 0, 2, 3]) faces.push(...corners[k]);
     for (const k of [0, 1, 2, 3, 0, 3]) edges.push(...corners[k]);
   }
-  const geometry = (/** @type {number[]} */ points) => new BufferGeometry().setAttribute('position', new Float32BufferAttribute(points, 3));
+  const geometry = (/** @type {number[]} */ points) =>
+    new BufferGeometry().setAttribute('position', new Float32BufferAttribute(points, 3));
   return { faces: geometry(faces), edges: geometry(edges) };
 }

@@ -8,7 +8,7 @@ import { ConvexGeometry } from 'three/addons/geometries/ConvexGeometry.js';
 import { attitudeToScene, toScene } from './frames.js';
 
 const LINK_RADIUS = 0.03; // m, wider than it is, to be seen from afar
-const RIM = 32; // points on the rim of a disc for the hull
+const RIM = 24; // points on the rim of a disc for the hull
 
 /** @typedef {import('../data.js').Run} Run */
 /** @typedef {import('./palette.js').Palette} Palette */
@@ -54,7 +54,8 @@ export class Formation {
       this.group.add(link);
       return link;
     });
-    this.tensionMax = this.tension ? largest(this.tension) : 0;
+    /** The scale of the links: about the force in the middle (N), so far as all but the jolts at touch-down go. */
+    this.force = this.tension ? spread(this.tension, 0.02) : { middle: 0, reach: 1 };
     this.rim = Array.from({ length: RIM }, (_, k) => {
       const angle = (2 * Math.PI * k) / RIM;
       return new Vector3(radius * Math.cos(angle), 0, radius * Math.sin(angle));
@@ -85,7 +86,7 @@ export class Formation {
       link.position.copy(from).addScaledVector(along, 0.5);
       link.scale.set(1, Math.max(length, 1e-3), 1);
       link.quaternion.setFromUnitVectors(UP, along.normalize());
-      if (tension) link.material.color.copy(this.palette.diverging(tension[i] / (this.tensionMax || 1)));
+      if (tension) link.material.color.copy(this.palette.diverging((tension[i] - this.force.middle) / this.force.reach));
     });
     if (this.hull.visible) this.updateHull();
   }
@@ -98,7 +99,7 @@ export class Formation {
     this.skin.geometry.dispose();
     this.edges.geometry.dispose();
     this.skin.geometry = new ConvexGeometry(points);
-    this.edges.geometry = new EdgesGeometry(this.skin.geometry, 15);
+    this.edges.geometry = new EdgesGeometry(this.skin.geometry, 20);
   }
 }
 
@@ -134,9 +135,14 @@ function uav(radius, looks) {
   return group;
 }
 
-/** The largest size of all values. @param {import('../data.js').Channel} channel */
-function largest(channel) {
-  let found = 0;
-  for (const column of channel.series) for (const value of column) if (Math.abs(value) > found) found = Math.abs(value);
-  return found;
+/**
+ * The median of all values, and how far from it all but a share of them are.
+ * @param {import('../data.js').Channel} channel
+ * @param {number} share
+ */
+function spread(channel, share) {
+  const values = channel.series.flatMap((column) => Array.from(column).filter(Number.isFinite)).sort((a, b) => a - b);
+  const middle = values[values.length >> 1] ?? 0;
+  const away = values.map((value) => Math.abs(value - middle)).sort((a, b) => a - b);
+  return { middle, reach: Math.max(away[Math.floor((1 - share) * (away.length - 1))] ?? 0, 0.1) };
 }

@@ -3,20 +3,15 @@
 import { BoxGeometry, BufferGeometry, Float32BufferAttribute, Group, LineSegments, Mesh, PlaneGeometry, Shape, ShapeGeometry } from 'three';
 import { toScene } from './frames.js';
 
-const STEPS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
-
 /**
  * @param {import('../data.js').Run} run
- * @param {{low: number[], high: number[]}} box of the flight
+ * @param {{low: number[], high: number[], step: number}} box of the flight, and the step of the grid (m)
  * @param {import('./palette.js').Palette} palette
  * @param {import('./labels.js').Labels} labels
  */
 export function ground(run, box, palette, labels) {
   const group = new Group();
-  const widest = Math.max(box.high[0] - box.low[0], box.high[1] - box.low[1]);
-  const step = STEPS.find((each) => widest / each <= 16) ?? 2000;
-  const [north0, east0] = box.low.slice(0, 2).map((x) => step * Math.floor((x - 0.5 * step) / step));
-  const [north1, east1] = box.high.slice(0, 2).map((x) => step * Math.ceil((x + 0.5 * step) / step));
+  const { low: [north0, east0], high: [north1, east1], step } = box;
   const board = new Mesh(new PlaneGeometry(east1 - east0, north1 - north0), palette.flat('ground'));
   board.rotation.x = -Math.PI / 2;
   board.position.set((east0 + east1) / 2, -0.02, -(north0 + north1) / 2);
@@ -36,26 +31,29 @@ export function ground(run, box, palette, labels) {
   }
   group.add(lines(fine, palette.hairline('muted', 0.16)), lines(coarse, palette.hairline('muted', 0.5)));
 
-  // Metres along the south and the west edge, at every other line.
+  // Metres inside the south and the west edge, at every other line; not in their corner.
   const every = 2 * step;
-  const aside = 0.35 * step;
-  const first = (/** @type {number} */ x) => every * Math.ceil((x + 0.5 * step) / every);
+  const inside = 0.35 * step;
+  const first = (/** @type {number} */ x) => every * Math.ceil((x + 0.8 * step) / every);
   for (let east = first(east0); east < east1; east += every) {
-    const label = labels.add(east === 0 ? 'E 0 m' : `${east}`, 'mark');
-    label.position.set(east, 0, -north0 + aside);
+    labels.add(mark('E', east), 'mark').position.set(east, 0, -north0 - inside);
   }
   for (let north = first(north0); north < north1; north += every) {
-    const label = labels.add(north === 0 ? 'N 0 m' : `${north}`, 'mark');
-    label.position.set(east0 - aside, 0, -north);
+    labels.add(mark('N', north), 'mark').position.set(east0 + inside, 0, -north);
   }
 
   const arrow = new Mesh(new ShapeGeometry(arrowShape(step)), palette.flat('text'));
   arrow.rotation.x = -Math.PI / 2;
-  arrow.position.set(east1 + 0.7 * step, 0, -(north1 - 2 * step));
+  arrow.position.set(east1 - 0.5 * step, 0, -(north1 - 2.3 * step));
   group.add(arrow);
-  labels.add('N', 'north').position.set(east1 + 0.7 * step, 0, -(north1 + 0.5 * step));
+  labels.add('N', 'north').position.set(east1 - 0.5 * step, 0, -(north1 - 2.8 * step));
   group.add(...pad(run, palette));
   return group;
+}
+
+/** @param {string} axis @param {number} metres */
+function mark(axis, metres) {
+  return metres === 0 ? `${axis} 0 m` : `${metres}`.replace('-', '−');
 }
 
 /** @param {number[]} points @param {import('three').Material} material */

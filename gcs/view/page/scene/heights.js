@@ -18,6 +18,9 @@ export class Heights {
       stencilWrite: true, stencilRef: 1, stencilFunc: NotEqualStencilFunc, stencilZPass: ReplaceStencilOp,
     });
     palette.materials.push({ colour: null, material: dark });
+    palette.onChange(() => {
+      dark.opacity = palette.scheme.matches ? 0.6 : 0.28;
+    });
     const flat = new Group();
     flat.scale.y = 1e-4;
     flat.position.y = 0.004;
@@ -61,7 +64,7 @@ export class Heights {
     });
     ends.needsUpdate = true;
     const { x, y, z } = this.formation.payload.position;
-    this.label.position.set(x, y / 2, z);
+    this.label.position.set(x, y - Math.min(y / 2, 1.5), z);
     this.label.say(`${y.toFixed(1)} m up`);
     this.label.visible = y > 1 && this.group.visible;
   }

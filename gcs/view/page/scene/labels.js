@@ -10,7 +10,7 @@ const GAP = 8; // px between a place and the words beside it
  * @type {Record<string, number[][]>}
  */
 const PLACES = {
-  clearance: [[0, -0.5, 14, 0]],
+  clearance: [[0, -0.5, 14, 0], [-0.5, 0, 0, 12], [-0.5, -1, 0, -12], [-1, -0.5, -14, 0]],
   contact: [[0, -0.5, 14, 0]],
   waypoint: [[-0.5, -0.5, 0, 0]],
   obstacle: [[-0.5, -1, 0, -2], [-1, -1, -GAP, 0], [0, -1, GAP, 0]],
@@ -21,6 +21,7 @@ const PLACES = {
 };
 /** In this order they choose; from `MAY_HIDE` on, those without a free place are not shown. */
 const ORDER = Object.keys(PLACES);
+const CLEARANCE = ORDER.indexOf('contact');
 const MAY_HIDE = ORDER.indexOf('obstacle');
 
 export class Labels {
@@ -30,6 +31,8 @@ export class Labels {
     parent.append(this.element);
     /** @type {Label[]} */
     this.labels = [];
+    /** Whether names and numbers are shown; the clearance always says its metres. */
+    this.visible = true;
   }
 
   /** @param {string} text @param {string} kind one of `PLACES`, a class of scene.css */
@@ -46,17 +49,22 @@ export class Labels {
    * @param {import('three').Camera} camera
    * @param {number} width px
    * @param {number} height px
+   * @param {Vector3[]} points that no words may cover
    */
-  place(camera, width, height) {
+  place(camera, width, height, points = []) {
     const at = new Vector3();
     /** @type {number[][]} left, top, right, bottom */
-    const taken = [];
+    const taken = points.map((point) => {
+      at.copy(point).project(camera);
+      const [x, y] = [(0.5 + 0.5 * at.x) * width, (0.5 - 0.5 * at.y) * height];
+      return [x - 4, y - 4, x + 4, y + 4];
+    });
     for (const label of this.labels) {
       at.copy(label.position).project(camera);
       const inside = at.z > -1 && at.z < 1 && Math.abs(at.x) < 1.1 && Math.abs(at.y) < 1.1;
       const x = (0.5 + 0.5 * at.x) * width;
       const y = (0.5 - 0.5 * at.y) * height;
-      const spot = inside && label.visible && label.layer() ? label.spot(x, y, taken) : null;
+      const spot = inside && label.visible && label.layer() && (this.visible || label.rank <= CLEARANCE) ? label.spot(x, y, taken) : null;
       label.element.hidden = !spot;
       if (!spot) continue;
       taken.push(spot);

@@ -1,6 +1,7 @@
-/** The obstacles as they were, at their place at a time. */
+/** The obstacles as they were, at their place at a time; the zones of the fence are in fence.js. */
 
 import { EdgesGeometry, Group, LineSegments, Mesh } from 'three';
+import { isZone } from './fence.js';
 import { attitudeToScene, toScene } from './frames.js';
 import { Polyline } from './polyline.js';
 import { shapeGeometry } from './shapes.js';
@@ -15,7 +16,8 @@ export class Obstacles {
     this.group = new Group();
     const surface = palette.solid('obstacle');
     const edge = palette.hairline('obstacle-edge', 0.7);
-    this.obstacles = run.obstacles.map((/** @type {any} */ obstacle) => {
+    const bodies = run.obstacles.filter((/** @type {any} */ obstacle) => !isZone(obstacle));
+    this.obstacles = bodies.map((/** @type {any} */ obstacle) => {
       const geometry = shapeGeometry(obstacle);
       const mesh = new Mesh(geometry, surface);
       attitudeToScene(obstacle.quaternion, mesh.quaternion);
@@ -27,6 +29,7 @@ export class Obstacles {
       this.group.add(mesh);
       const channel = obstacle.channel ? run.channel(obstacle.channel) : null;
       const label = labels.add(obstacle.known ? obstacle.name : `${obstacle.name} (not on the map)`, 'obstacle');
+      label.layer = () => this.group.visible;
       return { mesh, channel, label, top };
     });
     const path = palette.line('obstacle', 1.5, { transparent: true, opacity: 0.5 });

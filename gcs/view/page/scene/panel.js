@@ -7,9 +7,9 @@ const NARROW = 560; // CSS pixels: in a scene narrower than this, the key is clo
 
 /**
  * A part of the scene.
- * @typedef {{name: string, colour: string, look: 'area'|'glass'|'wire'|'line'|'thin'|'dashed', shown: boolean, show: ((shown: boolean) => void)|null}} Part
+ * @typedef {{name: string, colour: string, look: 'area'|'glass'|'wire'|'line'|'thin'|'dashed'|'word', shown: boolean, show: ((shown: boolean) => void)|null}} Part
  */
-/** @typedef {{name: string, from: string, to: string, scale: (share: number) => import('three').Color, low: number, high: number}} Scale */
+/** @typedef {{name: string, from: string, between?: string, to: string, scale: (share: number) => import('three').Color, low: number, high: number}} Scale */
 
 export class Panel {
   /**
@@ -53,7 +53,7 @@ export class Panel {
 
 /** @param {Part} part */
 function row({ name, colour, look, shown, show }) {
-  const swatch = h(`span.scene-swatch.${look}`);
+  const swatch = h(`span.scene-swatch.${look}`, { 'aria-hidden': 'true' }, look === 'word' ? 'a1' : '');
   swatch.style.setProperty('--colour', `var(--${colour})`);
   if (!show) return h('div.scene-row', {}, h('span.scene-no-box'), swatch, name);
   const box = h('input', { type: 'checkbox', checked: shown, onchange: () => show(box.checked) });
@@ -61,10 +61,10 @@ function row({ name, colour, look, shown, show }) {
 }
 
 /** @param {Scale} scale @param {import('./palette.js').Palette} palette */
-function legend({ name, from, to, scale, low, high }, palette) {
+function legend({ name, from, between = '', to, scale, low, high }, palette) {
   const bar = h('div.scene-bar');
   palette.onChange(() => {
     bar.style.background = gradient(scale, low, high);
   });
-  return h('div.scene-legend', {}, name, bar, h('div.scene-ends', {}, h('span', {}, from), h('span', {}, to)));
+  return h('div.scene-legend', {}, name, bar, h('div.scene-ends', {}, h('span', {}, from), h('span', {}, between), h('span', {}, to)));
 }
