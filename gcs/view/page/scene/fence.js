@@ -1,7 +1,7 @@
 /** The fence: the boundary that holds the flight, and the zones that it must not enter, as translucent walls. */
 
 import {
-  Box3, BufferGeometry, CylinderGeometry, EdgesGeometry, ExtrudeGeometry, Float32BufferAttribute, Group, LineSegments, Mesh, Shape, Vector3,
+  BufferGeometry, CylinderGeometry, EdgesGeometry, ExtrudeGeometry, Float32BufferAttribute, Group, LineSegments, Mesh, Shape,
 } from 'three';
 
 /**
@@ -29,15 +29,17 @@ export function fence(run, height, palette, labels) {
   }
   const inside = palette.translucent('limit', 0.14);
   const insideEdge = palette.hairline('limit', 0.9);
-  const circles = run.obstacles.filter((/** @type {any} */ obstacle) => isZone(obstacle) && obstacle.kind === 'pole');
+  const zones = run.obstacles.filter(isZone);
+  const circles = zones.filter((/** @type {any} */ zone) => zone.kind === 'pole');
   for (const geometry of [
     ...excluded.map((/** @type {number[][]} */ ring) => block(ring, height)),
     ...circles.map((/** @type {any} */ circle) => column(circle, height)),
   ]) {
     group.add(new Mesh(geometry, inside), new LineSegments(new EdgesGeometry(geometry, 30), insideEdge));
-    const label = labels.add('no-fly zone', 'obstacle');
-    const middle = new Box3().setFromBufferAttribute(geometry.getAttribute('position')).getCenter(new Vector3());
-    label.position.copy(middle).setY(height);
+  }
+  for (const { name, position: [north, east] } of zones) {
+    const label = labels.add(name, 'obstacle');
+    label.position.set(east, height, -north);
     label.layer = () => group.visible;
   }
   return group;

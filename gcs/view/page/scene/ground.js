@@ -46,7 +46,7 @@ export function ground(run, box, palette, labels) {
   arrow.rotation.x = -Math.PI / 2;
   arrow.position.set(east1 - 0.5 * step, 0, -(north1 - 2.3 * step));
   group.add(arrow);
-  labels.add('N', 'north').position.set(east1 - 0.5 * step, 0, -(north1 - 2.8 * step));
+  labels.add('N', 'north').position.set(east1 - 0.5 * step, 0, -(north1 + 0.4 * step));
   group.add(...pad(run, palette));
   return group;
 }
