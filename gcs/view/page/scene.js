@@ -51,7 +51,9 @@ export class Scene {
     this.fence = fence(run, -box.low[2], this.palette, this.labels);
     this.world.add(ground(run, box, this.palette, this.labels), this.fence);
     const size = (run.meta.link_length ?? 3) + 2;
-    this.cameras = new Cameras(canvas, box, size, besideClearance(run), () => this.invalidate());
+    if (run.clearance) this.obstacles.update(run.clearance.time);
+    const aside = besideClearance(run, this.obstacles, 2 * size);
+    this.cameras = new Cameras(canvas, box, size, aside, () => this.invalidate());
     this.panel = new Panel(element, this.parts(ghost), this.scales(), this.palette, {
       choose: (kind) => this.setCamera(kind),
       zoom: (factor) => this.cameras.zoom(factor),
@@ -234,6 +236,8 @@ export class Scene {
   draw() {
     cancelAnimationFrame(this.frame);
     if (this.isStale) this.update();
+    const places = [this.formation.payload, ...this.formation.uavs.map(({ mesh }) => mesh)].map(({ position }) => position);
+    this.obstacles.reveal((place) => this.cameras.eye(place), [...places, ...this.clearance.ends]);
     this.renderer.render(this.world, this.cameras.current);
     this.labels.place(this.cameras.current, this.width ?? 1, this.height ?? 1, this.clearance.ends);
     // Only now: the controls of the camera ask for a further frame when they are moved along.

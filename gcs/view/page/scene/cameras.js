@@ -76,7 +76,7 @@ export class Cameras {
     else if (kind === 'follow') this.nearby();
     else {
       this.pan.target.copy(this.middle);
-      this.above.position.copy(this.middle).add(new Vector3(0, 1000, 0));
+      this.above.position.copy(this.middle).setY(1000);
       this.above.zoom = 1;
       this.above.updateProjectionMatrix();
       this.pan.update();
@@ -137,6 +137,11 @@ export class Cameras {
     this.above.updateProjectionMatrix();
   }
 
+  /** From where a place is seen. @param {Vector3} place */
+  eye(place) {
+    return this.kind === 'top' ? place.clone().setY(1000) : this.perspective.position;
+  }
+
   /** @param {number} factor below 1 brings nearer */
   zoom(factor) {
     if (this.kind === 'top') {
@@ -178,10 +183,14 @@ export class Cameras {
 }
 
 /**
- * The direction from which the line of the least clearance is seen at its length, from a little above.
+ * The direction from which the line of the least clearance is seen at its length, from a little above; from higher up, or
+ * from the other side, where an obstacle is in the way.
  * @param {import('../data.js').Run} run
+ * @param {import('./obstacles.js').Obstacles} obstacles at the time of the least clearance
+ * @param {number} distance of the camera (m)
  */
-export function besideClearance({ clearance }) {
+export function besideClearance(run, obstacles, distance) {
+  const { clearance } = run;
   const from = FROM.clone().setY(0);
   if (clearance && clearance.min > 0) {
     const line = toScene(clearance.point_obstacle).sub(toScene(clearance.point_hull));
@@ -189,5 +198,12 @@ export function besideClearance({ clearance }) {
     if (Math.hypot(line.x, line.z) > 0.2 * clearance.min) from.set(-line.z, 0, line.x);
     if (from.z < 0) from.negate();
   }
-  return from.normalize().setY(0.3).normalize();
+  from.normalize();
+  const ways = [0.3, 0.7, 1.2].flatMap((up) => [1, -1].map((side) => new Vector3(side * from.x, up, side * from.z).normalize()));
+  if (!clearance) return ways[0];
+  const payload = run.flown('position').at(clearance.time);
+  const places = [clearance.point_hull, clearance.point_obstacle, payload].map((place) => toScene(place));
+  const isFree = (/** @type {Vector3} */ way) =>
+    places.every((place) => obstacles.hiding(place.clone().addScaledVector(way, distance), place).length === 0);
+  return ways.find(isFree) ?? ways[0];
 }

@@ -1,6 +1,6 @@
 /** What was on the ground station's map at a time: known and tracked obstacles, and boxes about what stands. */
 
-import { BufferGeometry, EdgesGeometry, Float32BufferAttribute, Group, LineSegments, Mesh } from 'three';
+import { BufferGeometry, EdgesGeometry, Float32BufferAttribute, Group, LineSegments, Mesh, Vector3 } from 'three';
 import { isZone } from './fence.js';
 import { attitudeToScene, sizeToScene, toScene, yawToScene } from './frames.js';
 import { shapeGeometry } from './shapes.js';
@@ -74,7 +74,7 @@ export class Detected {
 }
 
 const AROUND = 24; // segments of a circle
-const GROWN = 1.02; // so that the lines lie off the surface of the obstacle itself
+const OFF = 0.015; // m, so that the lines lie off the surface of the obstacle itself
 
 /**
  * The lines of a shape: its edges; of a sphere circles about its axes; of a pole circles and lines along it.
@@ -82,7 +82,7 @@ const GROWN = 1.02; // so that the lines lie off the surface of the obstacle its
  */
 function frame(shape) {
   const { kind, radius, size } = shape;
-  if (kind !== 'sphere' && kind !== 'pole') return new EdgesGeometry(shapeGeometry(shape), 25).scale(GROWN, GROWN, GROWN);
+  if (kind !== 'sphere' && kind !== 'pole') return grown(new EdgesGeometry(shapeGeometry(shape), 25));
   /** @type {number[]} */
   const ends = [];
   const circle = (/** @type {(c: number, s: number) => number[]} */ at) => {
@@ -107,7 +107,15 @@ function frame(shape) {
       ends.push(x, -half, z, x, half, z);
     }
   }
-  return new BufferGeometry().setAttribute('position', new Float32BufferAttribute(ends, 3)).scale(GROWN, GROWN, GROWN);
+  return grown(new BufferGeometry().setAttribute('position', new Float32BufferAttribute(ends, 3)));
+}
+
+/** @param {BufferGeometry} geometry */
+function grown(geometry) {
+  geometry.computeBoundingBox();
+  const { x, y, z } = /** @type {import('three').Box3} */ (geometry.boundingBox).getSize(new Vector3());
+  const [a, b, c] = [x, y, z].map((size) => 1 + (2 * OFF) / Math.max(size, OFF));
+  return geometry.scale(a, b, c);
 }
 
 /** @param {import('../data.js').Channel} channel @param {number} time */

@@ -26,8 +26,8 @@ export class Formation {
     this.group = new Group();
     this.position = run.flown('position');
     this.attitude = run.flown('attitude');
-    this.tension = run.channel('truth.tension');
     const ghost = look === 'ghost';
+    this.tension = ghost ? null : run.channel('truth.tension');
     const surface = (/** @type {string} */ colour) => (ghost ? palette.translucent('series-7', 0.45) : palette.solid(colour));
     this.payload = payload(run, surface('payload'), palette.hairline(ghost ? 'series-7' : 'background', ghost ? 1 : 0.8));
     this.group.add(this.payload);

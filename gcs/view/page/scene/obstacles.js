@@ -1,10 +1,13 @@
 /** The obstacles as they were, at their place at a time; the zones of the fence are in fence.js. */
 
-import { EdgesGeometry, Group, LineSegments, Mesh } from 'three';
+import { Box3, EdgesGeometry, Group, LineSegments, Mesh, Raycaster } from 'three';
 import { isZone } from './fence.js';
 import { attitudeToScene, toScene } from './frames.js';
 import { Polyline } from './polyline.js';
 import { shapeGeometry } from './shapes.js';
+
+const FADED = 0.25; // opacity of what hides the formation
+const TOUCHING = 0.05; // m: a place on the surface is not behind it
 
 export class Obstacles {
   /**
@@ -14,18 +17,16 @@ export class Obstacles {
    */
   constructor(run, palette, labels) {
     this.group = new Group();
-    const surface = palette.solid('obstacle');
+    this.ray = new Raycaster();
     const edge = palette.hairline('obstacle-edge', 0.7);
     const bodies = run.obstacles.filter((/** @type {any} */ obstacle) => !isZone(obstacle));
     this.obstacles = bodies.map((/** @type {any} */ obstacle) => {
       const geometry = shapeGeometry(obstacle);
-      const mesh = new Mesh(geometry, surface);
+      const mesh = new Mesh(geometry, palette.solid('obstacle', { transparent: true }));
       attitudeToScene(obstacle.quaternion, mesh.quaternion);
       if (obstacle.kind !== 'sphere') mesh.add(new LineSegments(new EdgesGeometry(geometry, 25), edge));
       if (obstacle.position) toScene(obstacle.position, mesh.position);
-      geometry.computeBoundingSphere();
-      const height = geometry.boundingSphere?.radius ?? 0;
-      const top = obstacle.kind === 'pole' ? obstacle.size[2] / 2 : height;
+      const top = new Box3().setFromObject(mesh, true).max.y - mesh.position.y;
       this.group.add(mesh);
       const channel = obstacle.channel ? run.channel(obstacle.channel) : null;
       const label = labels.add(obstacle.known ? obstacle.name : `${obstacle.name} (not on the map)`, 'obstacle');
@@ -42,10 +43,37 @@ export class Obstacles {
     }
   }
 
+  /**
+   * The obstacles that hide a place.
+   * @param {import('three').Vector3} eye
+   * @param {import('three').Vector3} place
+   */
+  hiding(eye, place) {
+    const along = place.clone().sub(eye);
+    this.ray.far = along.length() - TOUCHING;
+    this.ray.set(eye, along.normalize());
+    return this.obstacles.filter(({ mesh }) => this.ray.intersectObject(mesh, false).length > 0);
+  }
+
+  /**
+   * Let places be seen through what hides them.
+   * @param {(place: import('three').Vector3) => import('three').Vector3} eye from where a place is seen
+   * @param {import('three').Vector3[]} places
+   */
+  reveal(eye, places) {
+    const hiding = new Set(places.flatMap((place) => this.hiding(eye(place), place)));
+    for (const obstacle of this.obstacles) {
+      const { material } = obstacle.mesh;
+      material.opacity = hiding.has(obstacle) ? FADED : 1;
+      material.depthWrite = material.opacity === 1;
+    }
+  }
+
   /** @param {number} time */
   update(time) {
     for (const { mesh, channel, label, top } of this.obstacles) {
       if (channel) toScene(channel.at(time), mesh.position);
+      mesh.updateMatrixWorld(); // for the rays
       label.position.copy(mesh.position);
       label.position.y += top;
     }
