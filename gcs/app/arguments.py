@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from difflib import get_close_matches
 from functools import partial
 from importlib import metadata
+from pathlib import Path
 from typing import Any, NoReturn
 
 from rich_argparse import RawDescriptionRichHelpFormatter
@@ -116,6 +117,15 @@ def add_settings(parser: argparse.ArgumentParser) -> None:
         "--set", action=Settings, dest="settings", metavar="PATH=VALUE",
         help="a setting in place of the system file's, such as avoidance.margin=0.4; may be repeated",
     )  # fmt: skip
+
+
+def add_system_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options that change the system of a mission: ``--config``, ``--set`` and ``--vehicles``."""
+    parser.add_argument("--config", type=Path, metavar="C", help="system file in place of the mission's")
+    add_settings(parser)
+    parser.add_argument(
+        "--vehicles", type=VEHICLES, metavar="N", help="number of vehicles in place of the system file's"
+    )
 
 
 def time_span(text: str) -> float:

@@ -29,8 +29,8 @@ from gcs.flight.alarms import AlarmLog
 from gcs.flight.compute_times import ComputeTimes
 from gcs.flight.condition import Trigger
 from gcs.flight.control_loop import ControlLoop
-from gcs.flight.curve_limits import check_curve
 from gcs.flight.failsafe import Failsafe
+from gcs.flight.feasibility import check_curve
 from gcs.flight.flight import Flight
 from gcs.flight.ground_station import GroundStation, Recorder
 from gcs.flight.team import Team

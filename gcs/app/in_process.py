@@ -7,14 +7,13 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
-from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Protocol, Self
 
 from gcs.app.fly import FlightResult, cpu_time, flight_result, ground_station
 from gcs.app.imports import importing
 from gcs.drivers.in_process import InProcessLockstep, World
-from gcs.errors import GcsError
+from gcs.extras import simulator
 from gcs.flight.flight import Flight
 from gcs.flight.ground_station import GroundStation
 from gcs.mavlink.address import Address
@@ -25,7 +24,6 @@ from gcs.record.setpoints import SentSetpoints
 
 WORLDS = "cooplift.world"
 """Group of entry points, each a function of mission and run folder that opens a :class:`RecordedWorld`."""
-DEFAULT_WORLD = "pybullet"
 
 
 class RecordedWorld(World, Protocol):
@@ -34,22 +32,17 @@ class RecordedWorld(World, Protocol):
     @property
     def incomplete(self) -> Sequence[Incomplete]:
         """Records that could not be written in full; known when it is closed."""
-        ...
 
     def close(self) -> None:
         """End the world and its records; harmless when that is done."""
-        ...
 
 
 def open_world(mission: Mission, run_dir: Path) -> RecordedWorld:
-    """Open the world of ``mission`` that is installed: :data:`DEFAULT_WORLD`, or the only one.
+    """Open the world of ``mission`` that is installed, as :func:`gcs.extras.simulator` chooses.
 
     Raises :class:`GcsError` if there is none, and :class:`UnusableInput` if it cannot simulate the mission.
     """
-    found = entry_points(group=WORLDS)
-    if not found:
-        raise GcsError(f"no simulated world is installed (entry points {WORLDS}): install cooplift again")
-    entry = found[DEFAULT_WORLD] if DEFAULT_WORLD in found.names else next(iter(found))
+    entry = simulator(WORLDS, "world is")
     with importing():
         open_one = entry.load()
     world: RecordedWorld = open_one(mission, run_dir)

@@ -8,6 +8,7 @@ listed, with the bounds that they state; a plain default is held to its type, it
 
 import dataclasses
 from collections.abc import Iterator, Mapping
+from functools import cache
 from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
@@ -38,6 +39,7 @@ class ListedSetting:
     setting: Setting
 
 
+@cache
 def table_validator(cls: type[Any]) -> SchemaValidator:
     """Return the validator that reads a table into an object of the dataclass ``cls``.
 
@@ -103,6 +105,8 @@ def _plain(value: Any) -> Any:
 
 
 _Keys = tuple[tuple[str, Any, dataclasses.Field[Any]], ...]
+
+
 _keys_of: dict[type[Any], _Keys] = {}
 
 

@@ -9,12 +9,10 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import dataclass, field, fields, replace
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pydantic_core import SchemaValidator
 
 from gcs.config.flight_settings import DriverSettings, FlightSettings
 from gcs.config.schema import table_of, table_validator
@@ -148,11 +146,6 @@ class SystemConfig:
         return table_of(self)
 
 
-@cache
-def _validator() -> SchemaValidator:
-    return table_validator(SystemConfig)
-
-
 def read_system(path: Path | None = None) -> SystemConfig:
     """Read a system file; without one, return the default system.
 
@@ -170,7 +163,7 @@ def read_system(path: Path | None = None) -> SystemConfig:
 
 def system_of(file: TomlFile) -> SystemConfig:
     """Return the system of a parsed file. Raises :class:`UnusableFile` as :func:`read_system` does."""
-    config: SystemConfig = file.validated(_validator())
+    config: SystemConfig = file.validated(table_validator(SystemConfig))
     if problems := _disagreements(config, file):
         raise UnusableFile(problems)
     try:

@@ -162,6 +162,21 @@ class MotionConfig(SettingsTable):
     curve_jerk: float = setting(5.0, "m/s3", "jerk on figure eights", gt=0.0)
     curve_snap: float = setting(8.0, "m/s4", "snap on figure eights", gt=0.0)
 
+    @property
+    def limits(self) -> Limits:
+        """The limits of the motion between waypoints, at the speed where a mission names none."""
+        return Limits(self.speed, self.acceleration, self.jerk, self.snap, self.crackle)
+
+    @property
+    def climb_limits(self) -> Limits:
+        """The limits of climb and landing."""
+        return Limits(self.climb_speed, self.acceleration, self.jerk, self.snap, self.climb_crackle)
+
+    @property
+    def curve_limits(self) -> Limits:
+        """The limits of the motion along a curve."""
+        return Limits(self.curve_speed, self.curve_acceleration, self.curve_jerk, self.curve_snap)
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PadSettings(SettingsTable):

@@ -15,7 +15,6 @@ import signal
 import sys
 import tempfile
 from collections.abc import Iterator, Sequence
-from types import TracebackType
 
 from gcs.drivers.interrupt import SIGNALS
 
@@ -93,7 +92,5 @@ class ForkedProgram:
     def __enter__(self) -> ForkedProgram:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()

@@ -23,38 +23,30 @@ class World(Protocol):
     @property
     def addresses(self) -> Sequence[Address]:
         """Addresses of the vehicles of the system ids 1 .. N, in this order."""
-        ...
 
     @property
     def time(self) -> float:
         """Time that it has reached (s)."""
-        ...
 
     @property
     def at_rest(self) -> bool:
         """True if all vehicles are disarmed and nothing moves."""
-        ...
 
     @property
     def landing_timeout(self) -> float:
         """Time (s) after which vehicles without a ground are not waited for."""
-        ...
 
     def advance_to(self, now: float) -> None:
         """Let the world go on to ``now``."""
-        ...
 
     def datagrams_to_send(self, now: float) -> Sequence[tuple[bytes, Address]]:
         """Return what the vehicles send to :data:`GROUND` at ``now``: bytes, and the address of the vehicle."""
-        ...
 
     def receive(self, datagrams: Sequence[tuple[bytes, Address]], now: float) -> None:
         """Take datagrams from :data:`GROUND`, each with the address of the vehicle that it is for."""
-        ...
 
     def next_timer(self) -> float | None:
         """Return when :meth:`datagrams_to_send` has something to do next; None: never."""
-        ...
 
 
 class InProcessLockstep:
@@ -74,23 +66,6 @@ class InProcessLockstep:
         """True if the flight is over for the ground station."""
         return self.station.ended
 
-    def exchange(self) -> list[tuple[bytes, Address]]:
-        """Let the vehicles and then the ground station send all that is due now; return what the latter has sent."""
-        world, station, time = self.world, self.station, self._time
-        world.advance_to(time.world)
-        received = world.datagrams_to_send(time.world)
-        station.resume()
-        station.receive_all(received, time.ground)
-        sent = station.datagrams_to_send(time.ground)
-        station.sent()
-        world.receive(sent, time.world)
-        return sent
-
-    def advance(self) -> None:
-        """Go on to the time of the next exchange."""
-        time = self._time
-        time.advance(self.world.next_timer(), next_call_us(self.station.next_timer(), time.us))
-
     def let_land(self, timeout: float | None = None) -> bool:
         """Let time go on without the ground station until all is at rest; return whether it is.
 
@@ -109,6 +84,14 @@ class InProcessLockstep:
 
         ``exchanged`` is called in between with what the ground station has sent.
         """
-        exchanged(self.exchange())
-        if not self.ended:
-            self.advance()
+        world, station, time = self.world, self.station, self._time
+        world.advance_to(time.world)
+        received = world.datagrams_to_send(time.world)
+        station.resume()
+        station.receive_all(received, time.ground)
+        sent = station.datagrams_to_send(time.ground)
+        station.sent()
+        world.receive(sent, time.world)
+        exchanged(sent)
+        if not station.ended:
+            time.advance(world.next_timer(), next_call_us(station.next_timer(), time.us))

@@ -53,11 +53,11 @@ KINDS: dict[str, Kind] = {}
 def kind(
     name: str,
     family: Family,
+    aliases: Iterable[str],
     *,
     direction: Direction | None = None,
     of_vehicles: bool = True,
     bounded: bool = False,
-    aliases: Iterable[str] = (),
 ) -> Callable[[type[S]], type[S]]:
     """Class decorator that makes the parameters of a kind a dataclass; the docstring is its text in the listings."""
 

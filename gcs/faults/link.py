@@ -1,8 +1,9 @@
 """Faults of the links: what happens to datagrams on a link."""
 
-from typing import Annotated
+from collections.abc import Callable, Iterable
+from typing import Annotated, dataclass_transform
 
-from gcs.faults.kind import LOST, FaultSettings, kind, names, parameter
+from gcs.faults.kind import LOST, FaultSettings, S, kind, names, parameter
 
 _LINKS = "link datalink data_link comm comms communication connection radio telemetry mavlink network gcs rc signal"
 _PACKETS = "packet packets message messages datagram datagrams frame frames data"
@@ -12,11 +13,15 @@ _DELAY_ALIASES = "latency lag time delay_s delay_ms seconds value"
 _Delay = 60.0  # s, the longest
 
 
-@kind(
+@dataclass_transform(frozen_default=True, kw_only_default=True)
+def _link_kind(name: str, aliases: Iterable[str], *, bounded: bool = False) -> Callable[[type[S]], type[S]]:
+    """Class decorator of a kind that acts on both directions of a link, where a mission names none."""
+    return kind(name, "link", aliases, direction="both", bounded=bounded)
+
+
+@_link_kind(
     "packet_loss",
-    "link",
-    direction="both",
-    aliases=(*names(_PACKETS, "loss losses lost drop drops dropped dropping"), "loss", "drop", "drops", "random_loss"),
+    (*names(_PACKETS, "loss losses lost drop drops dropped dropping"), "loss", "drop", "drops", "random_loss"),
 )
 class PacketLoss(FaultSettings):
     """Datagrams are lost, each independently of the others."""
@@ -24,12 +29,7 @@ class PacketLoss(FaultSettings):
     probability: _Chance
 
 
-@kind(
-    "burst_loss",
-    "link",
-    direction="both",
-    aliases=("burst", "bursts", "bursty_loss", "loss_burst", "gilbert_elliott", "fading"),
-)
+@_link_kind("burst_loss", ("burst", "bursts", "bursty_loss", "loss_burst", "gilbert_elliott", "fading"))
 class BurstLoss(FaultSettings):
     """Datagrams are lost in bursts (Gilbert-Elliott): a good and a bad state alternate, with exponential durations."""
 
@@ -39,11 +39,8 @@ class BurstLoss(FaultSettings):
     loss_in_gap: Annotated[float, parameter("of a datagram in the good state", ge=0.0, le=1.0)] = 0.0
 
 
-@kind(
-    "latency",
-    "link",
-    direction="both",
-    aliases=("delay", "lag", "ping", "slow_link", *names(f"{_LINKS} {_PACKETS} time transport", "delay latency lag")),
+@_link_kind(
+    "latency", ("delay", "lag", "ping", "slow_link", *names(f"{_LINKS} {_PACKETS} time transport", "delay latency lag"))
 )
 class Latency(FaultSettings):
     """Datagrams arrive later, in their order."""
@@ -51,11 +48,8 @@ class Latency(FaultSettings):
     delay: Annotated[float, parameter("delay", "s", aliases=_DELAY_ALIASES, ge=0.0, le=_Delay)]
 
 
-@kind(
-    "jitter",
-    "link",
-    direction="both",
-    aliases=("variable_delay", "random_delay", *names("delay latency", "variation jitter"), *names(_LINKS, "jitter")),
+@_link_kind(
+    "jitter", ("variable_delay", "random_delay", *names("delay latency", "variation jitter"), *names(_LINKS, "jitter"))
 )
 class Jitter(FaultSettings):
     """Datagrams arrive later by a random time, in their order."""
@@ -72,7 +66,7 @@ class Jitter(FaultSettings):
     ]
 
 
-@kind("reordering", "link", direction="both", aliases=("reorder", "out_of_order", *names(_PACKETS, "reordering order")))
+@_link_kind("reordering", ("reorder", "out_of_order", *names(_PACKETS, "reordering order")))
 class Reordering(FaultSettings):
     """Some datagrams are delayed, so that later ones overtake them."""
 
@@ -80,12 +74,7 @@ class Reordering(FaultSettings):
     delay: Annotated[float, parameter("of such a datagram", "s", aliases=_DELAY_ALIASES, gt=0.0, le=_Delay)] = 0.05
 
 
-@kind(
-    "duplication",
-    "link",
-    direction="both",
-    aliases=("duplicate", "duplicates", "repeat", *names(_PACKETS, "duplication duplicated repeated")),
-)
+@_link_kind("duplication", ("duplicate", "duplicates", "repeat", *names(_PACKETS, "duplication duplicated repeated")))
 class Duplication(FaultSettings):
     """Some datagrams arrive twice."""
 
@@ -93,16 +82,9 @@ class Duplication(FaultSettings):
     delay: Annotated[float, parameter("delay of the second one", "s", aliases=_DELAY_ALIASES, ge=0.0, le=_Delay)] = 0.0
 
 
-@kind(
+@_link_kind(
     "corruption",
-    "link",
-    direction="both",
-    aliases=(
-        "corrupt",
-        "garbage",
-        *names("bit byte", "error errors flip flips"),
-        *names(_PACKETS, "corruption corrupted"),
-    ),
+    ("corrupt", "garbage", *names("bit byte", "error errors flip flips"), *names(_PACKETS, "corruption corrupted")),
 )
 class Corruption(FaultSettings):
     """Some bytes of some datagrams are replaced by other ones, anywhere."""
@@ -111,27 +93,23 @@ class Corruption(FaultSettings):
     bytes: Annotated[int, parameter("number of bytes replaced", ge=1, le=1000)] = 1
 
 
-@kind(
-    "bad_checksum", "link", direction="both", aliases=("crc", "bad_crc", *names("crc checksum", "error errors fault"))
-)
+@_link_kind("bad_checksum", ("crc", "bad_crc", *names("crc checksum", "error errors fault")))
 class BadChecksum(FaultSettings):
     """The checksum of every message in some datagrams is wrong; the contents are not."""
 
     probability: _Chance
 
 
-@kind("truncation", "link", direction="both", aliases=("truncate", *names(_PACKETS, "truncation truncated cut")))
+@_link_kind("truncation", ("truncate", *names(_PACKETS, "truncation truncated cut")))
 class Truncation(FaultSettings):
     """Some datagrams are truncated at a random byte."""
 
     probability: _Chance
 
 
-@kind(
+@_link_kind(
     "bandwidth_cap",
-    "link",
-    direction="both",
-    aliases=("throttle", "congestion", "baudrate", "baud_rate", *names("bandwidth rate low", "limit bandwidth cap")),
+    ("throttle", "congestion", "baudrate", "baud_rate", *names("bandwidth rate low", "limit bandwidth cap")),
 )
 class BandwidthCap(FaultSettings):
     """Datagrams wait for those before them to pass, and are lost when too many wait."""
@@ -140,28 +118,19 @@ class BandwidthCap(FaultSettings):
     queue: Annotated[int, parameter("bytes that may wait", "bytes", ge=1, le=10**9)] = 8192
 
 
-@kind(
-    "partition",
-    "link",
-    direction="both",
-    aliases=("no_link", "disconnect", "blackout", *names(_LINKS, f"{LOST} blackout partition")),
-)
+@_link_kind("partition", ("no_link", "disconnect", "blackout", *names(_LINKS, f"{LOST} blackout partition")))
 class Partition(FaultSettings):
     """No datagram passes, in both directions or in one."""
 
 
-@kind(
-    "stall",
-    "link",
-    direction="both",
-    bounded=True,
-    aliases=("freeze", "buffering", *names("link datalink connection network telemetry", "stall freeze")),
+@_link_kind(
+    "stall", ("freeze", "buffering", *names("link datalink connection network telemetry", "stall freeze")), bounded=True
 )
 class Stall(FaultSettings):
     """No datagram passes for the duration; then all delayed ones arrive at once."""
 
 
-@kind("flapping", "link", direction="both", aliases=("flap", *names(_LINKS, "flapping"), *names("unstable", _LINKS)))
+@_link_kind("flapping", ("flap", *names(_LINKS, "flapping"), *names("unstable", _LINKS)))
 class Flapping(FaultSettings):
     """The link is down and up alternately, down first; what is sent while it is down is lost."""
 

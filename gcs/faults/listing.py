@@ -2,6 +2,7 @@
 
 import sys
 from dataclasses import dataclass, fields
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -48,15 +49,13 @@ def kinds_list() -> RenderableType:
     """Return every kind with its parameters, for a terminal of any width."""
     width = max(len(p.name) for kind in KINDS.values() for p in parameters(kind))
     items: list[RenderableType] = []
-    family = ""
-    for kind in KINDS.values():
-        if kind.family != family:
-            family = kind.family
-            items += [Text(), Text(family, style="bold underline")]
-            if family == "values":
-                items += [Text(), Text("all that have a channel", style="italic"), _indented(_shared(), width)]
-        items += [Text(), Text(kind.name, style="bold cyan"), Padding(Text(_summary(kind)), (0, 0, 0, 2))]
-        items += [_indented(own, width)] if (own := _own(kind)) else []
+    for family, kinds in groupby(KINDS.values(), lambda kind: kind.family):
+        items += [Text(), Text(family, style="bold underline")]
+        if family == "values":
+            items += [Text(), Text("all that have a channel", style="italic"), _indented(_shared(), width)]
+        for kind in kinds:
+            items += [Text(), Text(kind.name, style="bold cyan"), Padding(Text(_summary(kind)), (0, 0, 0, 2))]
+            items += [_indented(own, width)] if (own := _own(kind)) else []
     notes = Text(
         "Every fault has kind and start (s after take-off begins: when the first vehicle lifts off); it may have "
         "duration (s), every (s, from start to start) and times; vehicles where it is of vehicles; direction "
@@ -68,16 +67,14 @@ def kinds_list() -> RenderableType:
 def kinds_markdown() -> str:
     """Return the same list as the tables of ``docs/faults.md``."""
     lines: list[str] = []
-    family = ""
-    for kind in KINDS.values():
-        if kind.family != family:
-            family = kind.family
-            lines += ["", f"### {family}", ""]
-            if family == "values":
-                lines += ["All but `swapped_vehicles` have:", "", *(f"- {_sentence(p)}" for p in _shared()), ""]
-            lines += ["| kind | what it does | parameters |", "|---|---|---|"]
-        own = "<br>".join(_sentence(p) for p in _own(kind)) or "none of its own"
-        lines.append(f"| `{kind.name}` | {_summary(kind)} | {own} |")
+    for family, kinds in groupby(KINDS.values(), lambda kind: kind.family):
+        lines += ["", f"### {family}", ""]
+        if family == "values":
+            lines += ["All but `swapped_vehicles` have:", "", *(f"- {_sentence(p)}" for p in _shared()), ""]
+        lines += ["| kind | what it does | parameters |", "|---|---|---|"]
+        for kind in kinds:
+            own = "<br>".join(_sentence(p) for p in _own(kind)) or "none of its own"
+            lines.append(f"| `{kind.name}` | {_summary(kind)} | {own} |")
     return "\n".join(lines).strip() + "\n"
 
 

@@ -16,7 +16,7 @@ _Onboard = Annotated[
 @kind(
     "position_lost",
     "sensors",
-    aliases=("gps", "gnss", "no_gps", "jamming", *names(f"velocity {_POSITION}", f"{LOST} {_JAMMED}")),
+    ("gps", "gnss", "no_gps", "jamming", *names(f"velocity {_POSITION}", f"{LOST} {_JAMMED}")),
 )
 class PositionLost(FaultSettings):
     """Position and velocity are no longer measured or reported."""
@@ -24,7 +24,7 @@ class PositionLost(FaultSettings):
     onboard: _Onboard = True
 
 
-@kind("position_glitch", "sensors", aliases=names(_POSITION, "glitch glitches jump jumps step hop"))
+@kind("position_glitch", "sensors", names(_POSITION, "glitch glitches jump jumps step hop"))
 class PositionGlitch(FaultSettings):
     """The measured position jumps away and back, level, in random directions, and the vehicle flies by it."""
 
@@ -33,25 +33,21 @@ class PositionGlitch(FaultSettings):
     hold: Annotated[float, parameter("duration of a jump", "s", gt=0.0, le=1e3)] = 0.2
 
 
-@kind("position_drift", "sensors", aliases=("spoofing", *names(_POSITION, "drift ramp spoof spoofing spoofed")))
+@kind("position_drift", "sensors", ("spoofing", *names(_POSITION, "drift ramp spoof spoofing spoofed")))
 class PositionDrift(FaultSettings):
     """The measured position drifts away, the velocity does not, and the vehicle flies by it."""
 
     velocity: Annotated[_Vector, parameter("of the drift, north-east-down", "m/s")]
 
 
-@kind(
-    "attitude_lost",
-    "sensors",
-    aliases=names("attitude imu ahrs mag magnetometer compass heading yaw orientation", LOST),
-)
+@kind("attitude_lost", "sensors", names("attitude imu ahrs mag magnetometer compass heading yaw orientation", LOST))
 class AttitudeLost(FaultSettings):
     """The attitude is no longer reported, nor the rates, which share its message."""
 
     onboard: _Onboard = False
 
 
-@kind("rates_lost", "sensors", aliases=names("rate rates gyro gyroscope angular_rate body_rates", LOST))
+@kind("rates_lost", "sensors", names("rate rates gyro gyroscope angular_rate body_rates", LOST))
 class RatesLost(FaultSettings):
     """The rates are reported as NaN, MAVLink's unknown value."""
 
@@ -61,7 +57,7 @@ class RatesLost(FaultSettings):
 @kind(
     "payload_unit_lost",
     "sensors",
-    aliases=names("payload payload_unit payload_imu payload_gps payload_sensor payload_nav", LOST),
+    names("payload payload_unit payload_imu payload_gps payload_sensor payload_nav", LOST),
 )
 class PayloadUnitLost(FaultSettings):
     """The vehicles receive nothing from the payload's navigation unit, and relay nothing."""
@@ -70,7 +66,7 @@ class PayloadUnitLost(FaultSettings):
 @kind(
     "obstacle_sensing_lost",
     "sensors",
-    aliases=names(
+    names(
         "lidar radar camera depth vision obstacle obstacles obstacle_sensor obstacle_sensing range range_sensor "
         "rangefinder distance_sensor proximity",
         LOST,

@@ -61,7 +61,7 @@ class ValueFault(FaultSettings):
         return None
 
 
-@kind("bias", "values", aliases=("offset", "constant_offset", *names(_SENSORS, "bias offset")))
+@kind("bias", "values", ("offset", "constant_offset", *names(_SENSORS, "bias offset")))
 class Bias(ValueFault):
     """A constant is added."""
 
@@ -70,16 +70,14 @@ class Bias(ValueFault):
     ]
 
 
-@kind("drift", "values", aliases=("ramp", "random_walk", *names("sensor imu gyro attitude velocity", "drift ramp")))
+@kind("drift", "values", ("ramp", "random_walk", *names("sensor imu gyro attitude velocity", "drift ramp")))
 class Drift(ValueFault):
     """The added amount grows with the time since the start of the fault."""
 
     rate: Annotated[float, parameter("on each of the axes", "channel's/s", ge=-_Amount, le=_Amount)]
 
 
-@kind(
-    "scale", "values", aliases=("gain", "scaling", *names("scale gain", "factor error"), *names(_SENSORS, "scale gain"))
-)
+@kind("scale", "values", ("gain", "scaling", *names("scale gain", "factor error"), *names(_SENSORS, "scale gain")))
 class Scale(ValueFault):
     """Values are multiplied."""
 
@@ -87,9 +85,7 @@ class Scale(ValueFault):
 
 
 @kind(
-    "stuck",
-    "values",
-    aliases=("frozen", "stuck_at", *names(_SENSORS, "stuck frozen freeze"), *names("frozen stuck", _SENSORS)),
+    "stuck", "values", ("frozen", "stuck_at", *names(_SENSORS, "stuck frozen freeze"), *names("frozen stuck", _SENSORS))
 )
 class Stuck(ValueFault):
     """Values remain those at the start of the fault; time stamps continue."""
@@ -98,7 +94,7 @@ class Stuck(ValueFault):
 @kind(
     "spikes",
     "values",
-    aliases=("spike", "glitch", "glitches", "outlier", "outliers", *names(_SENSORS, "spike spikes outlier outliers")),
+    ("spike", "glitch", "glitches", "outlier", "outliers", *names(_SENSORS, "spike spikes outlier outliers")),
 )
 class Spikes(ValueFault):
     """Single samples are off by an amount, up or down, each axis independently."""
@@ -107,7 +103,7 @@ class Spikes(ValueFault):
     amount: Annotated[float, parameter("size of a spike", "channel's", gt=0.0, le=_Amount)]
 
 
-@kind("not_a_number", "values", aliases=("nan", "nans", "inf", "infinity", *names(_SENSORS, "nan inf")))
+@kind("not_a_number", "values", ("nan", "nans", "inf", "infinity", *names(_SENSORS, "nan inf")))
 class NotANumber(ValueFault):
     """Values are NaN or infinite. Messages with integer fields, which have no such value, are not sent."""
 
@@ -115,35 +111,31 @@ class NotANumber(ValueFault):
     probability: Annotated[float, parameter("of a sample", ge=0.0, le=1.0)] = 1.0
 
 
-@kind(
-    "quantisation",
-    "values",
-    aliases=("quantization", "rounding", "resolution", *names(_SENSORS, "quantisation resolution")),
-)
+@kind("quantisation", "values", ("quantization", "rounding", "resolution", *names(_SENSORS, "quantisation resolution")))
 class Quantisation(ValueFault):
     """Values are rounded coarsely."""
 
     step: Annotated[float, parameter("step between values", "channel's", gt=0.0, le=_Amount)]
 
 
-@kind("flipped_sign", "values", aliases=("inverted", "reversed", "negated", "sign", "sign_flip", "sign_error"))
+@kind("flipped_sign", "values", ("inverted", "reversed", "negated", "sign", "sign_flip", "sign_error"))
 class FlippedSign(ValueFault):
     """Values have the opposite sign."""
 
 
-@kind("swapped_frame", "values", aliases=("enu", "wrong_frame", "frame_swap", "swapped_axes", "axes_swap"))
+@kind("swapped_frame", "values", ("enu", "wrong_frame", "frame_swap", "swapped_axes", "axes_swap"))
 class SwappedFrame(ValueFault):
     """Values are in another frame: x and y exchanged, z reversed (east-north-up for north-east-down)."""
 
 
-@kind("noise", "values", aliases=("noisy", *names(f"white gaussian {_SENSORS}", "noise"), *names("noisy", _SENSORS)))
+@kind("noise", "values", ("noisy", *names(f"white gaussian {_SENSORS}", "noise"), *names("noisy", _SENSORS)))
 class Noise(ValueFault):
     """White noise is added, so that in all there is a multiple of the system file's; obstacles: on every axis."""
 
     factor: Annotated[float, parameter("noise with the fault over noise without", ge=1.0, le=1e3)]
 
 
-@kind("intermittent", "values", aliases=("flaky", "loose_contact", *names("intermittent flaky", _SENSORS)))
+@kind("intermittent", "values", ("flaky", "loose_contact", *names("intermittent flaky", _SENSORS)))
 class Intermittent(ValueFault):
     """Values are stuck and true alternately, for random times; true first."""
 
@@ -152,9 +144,7 @@ class Intermittent(ValueFault):
 
 
 @kind(
-    "swapped_vehicles",
-    "values",
-    aliases=("swapped", *names("swapped", "ids id uavs"), *names("id ids vehicle", "swap mixup")),
+    "swapped_vehicles", "values", ("swapped", *names("swapped", "ids id uavs"), *names("id ids vehicle", "swap mixup"))
 )
 class SwappedVehicles(FaultSettings):
     """Two vehicles report each other's attitude, rates, position and velocity as their own."""

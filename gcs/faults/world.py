@@ -10,7 +10,7 @@ _Vector = tuple[float, float, float]
 LEAST_MASS = 0.1  # kg that must be left of the payload
 
 
-@kind("wind", "world", of_vehicles=False, aliases=("gust", "gusts", "turbulence", "wind_gust", "wind_gusts"))
+@kind("wind", "world", ("gust", "gusts", "turbulence", "wind_gust", "wind_gusts"), of_vehicles=False)
 class Wind(FaultSettings):
     """Wind, the same everywhere, with gusts: first-order coloured noise. Drag on payload and UAVs is quadratic."""
 
@@ -29,8 +29,8 @@ class Wind(FaultSettings):
 @kind(
     "payload_mass",
     "world",
+    ("mass", "load", "weight", *names("payload load mass", "change step added removed weight release")),
     of_vehicles=False,
-    aliases=("mass", "load", "weight", *names("payload load mass", "change step added removed weight release")),
 )
 class PayloadMass(FaultSettings):
     """The payload is heavier or lighter at once, inertia in proportion, centre of mass where it was."""

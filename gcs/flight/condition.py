@@ -81,7 +81,7 @@ class System:
     preflight: Preflight
     plan: PlanMonitor
     impact: ImpactMonitor
-    obstacle_map: ObstacleMap | None = None
+    obstacle_map: ObstacleMap
     settings: FailsafeSettings = DEFAULTS.failsafe
     kept_clearance: float = 0.6
     """What plans keep from obstacles (m): the margin, and the bound on the payload's deviation from its plan."""

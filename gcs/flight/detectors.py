@@ -248,9 +248,7 @@ def _range_sensors(step: MonitorStep) -> None:
     for i, link in enumerate(step.links):
         if not link.status.obstacle_sensing_valid:
             step.raise_alarm(step.name(i), MonitorAlarm.RANGE_SENSOR_FAILED)
-    if (obstacle_map := step.flight.system.obstacle_map) is None:
-        return
-    sensors = obstacle_map.placement.range_sensors
+    sensors = step.flight.system.obstacle_map.placement.range_sensors
     for i in sensors.silent:
         if step.links[i].status.obstacle_sensing_valid:
             step.raise_alarm(step.name(i), MonitorAlarm.RANGE_SENSOR_SILENT)
@@ -302,8 +300,7 @@ class _ModelMismatch:
 
 def _obstacles(step: MonitorStep) -> None:
     """Obstacles that are no longer detected, or elsewhere than on the map."""
-    if (obstacle_map := step.flight.system.obstacle_map) is None:
-        return
+    obstacle_map = step.flight.system.obstacle_map
     for name in obstacle_map.take_deleted_tracks():
         step.raise_alarm(name, MonitorAlarm.TRACK_LOST, "not detected although a vehicle is near")
     for uav, offset in obstacle_map.map_offsets.items():

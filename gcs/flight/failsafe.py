@@ -117,8 +117,6 @@ def _obstructed(system: System, moment: Moment) -> Trigger | None:
 
 def _obstruction(system: System, time: float, place: Array, within: float) -> Obstruction | None:
     """Return what is nearer than ``within`` (m) to the formation at rest at ``place`` (3,), by the obstacle map."""
-    if system.obstacle_map is None:
-        return None
     return obstruction(Formation(system.team.parameters), system.obstacle_map, time, place, within)
 
 
@@ -169,10 +167,9 @@ def _link_latency_exceeded(system: System, moment: Moment) -> Trigger | None:
 
 
 def _disarmed_in_flight(system: System, moment: Moment) -> Trigger | None:
-    for i, link in enumerate(system.team.links):
-        if not link.status.armed:
-            return Trigger(f"vehicle {link.system_id} has disarmed itself{link.status.last_text}", (i,))
-    return None
+    return _first_vehicle(
+        system, lambda link: "" if link.status.armed else f"has disarmed itself{link.status.last_text}"
+    )
 
 
 def _offboard_left(system: System, moment: Moment) -> Trigger | None:
@@ -204,13 +201,15 @@ def _data_link_lost(system: System, moment: Moment) -> Trigger | None:
 
 
 def _obstacle_sensing_lost(system: System, moment: Moment) -> Trigger | None:
-    lost = system.obstacle_map is not None and system.obstacle_map.sensing_lost
-    return Trigger("no vehicle detects obstacles, or what all of them detect is impossible") if lost else None
+    if not system.obstacle_map.sensing_lost:
+        return None
+    return Trigger("no vehicle detects obstacles, or what all of them detect is impossible")
 
 
 def _map_offset(system: System, moment: Moment) -> Trigger | None:
-    offset = system.obstacle_map is not None and system.obstacle_map.map_offset_detected
-    return Trigger("no vehicle detects obstacles where they are on the map any more") if offset else None
+    if not system.obstacle_map.map_offset_detected:
+        return None
+    return Trigger("no vehicle detects obstacles where they are on the map any more")
 
 
 def _no_path(system: System, moment: Moment) -> Trigger | None:

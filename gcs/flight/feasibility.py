@@ -14,12 +14,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from gcs.mission.model import Limits, Mission, Obstacle
+from gcs.errors import UnusableInput
+from gcs.mission.model import Limits, Lissajous, Mission, Obstacle
 from gcs.mission.route import Circle, HoldForever, Land, Leg, Position, Route, TakeOff
 from gcs.mission.route_clearance import SPACING, TRIED_LEGS, circle_places, curve_places, free_space, keeps_margin
 from idc_controller.arrays import Array
+from idc_controller.errors import TrajectoryError
 from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.free_space import FreeSpace
+from idc_controller.trajectory.lissajous_curve import LissajousCurve, check_full_rate
 
 if TYPE_CHECKING:
     from idc_controller.geometry.obstacles import PredictedObstacle, Region
@@ -28,41 +31,38 @@ if TYPE_CHECKING:
 
 _SHORT = 0.3
 """m of the margin that a leg need not keep to be accepted: what the margin bars, a plan with slack may pass."""
-
-
-class Way(NamedTuple):
-    """How a leg that does not lead straight to its end leads there."""
-
-    source: str
-    obstacle: str
-    """What is in its way."""
-    straight: float
-    """Length of the leg (m)."""
-    length: float
-    """Length of the detour (m)."""
-
-    def __str__(self) -> str:
-        """Return it in words."""
-        return (
-            f"{self.source}: {self.obstacle} is in the way: the safety filter or a detour leads round it, "
-            f"{self.length:.1f} m in place of {self.straight:.1f} m"
-        )
+_LED_ROUND = "is in the way: the safety filter or a detour leads round it"
 
 
 @dataclass
 class Feasibility:
-    """What was found: ways round obstacles, further notes, and problems, one line each."""
+    """What there is to say of a mission, one line each; without ``problems`` it can be flown."""
 
-    ways: list[Way] = field(default_factory=list)
+    ways: list[str] = field(default_factory=list)
+    """Legs that lead round what is on the map, with the length of the way."""
     notes: list[str] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
+
+    @property
+    def lines(self) -> list[str]:
+        """Ways and notes."""
+        return [*self.ways, *self.notes]
 
 
 def feasibility(mission: Mission, standing: Sequence[Obstacle]) -> Feasibility:
     """Return whether ``mission`` can be flown past what is ``standing``, as far as that is known before the flight."""
-    found = Feasibility()
-    _Check(mission, standing, found).run()
-    return found
+    return _Check(mission, standing).run()
+
+
+def check_curve(mission: Mission) -> None:
+    """Raise :class:`UnusableInput` for a figure eight that is faster than the limits of its curve."""
+    figure = mission.reference
+    if isinstance(figure, Lissajous):
+        curve = LissajousCurve(figure.amplitude, down=-figure.altitude)
+        try:
+            check_full_rate(curve, figure.angular_frequency, mission.system.motion.curve_limits)
+        except TrajectoryError as error:
+            raise UnusableInput(f"{mission.path}: table [reference]: angular_frequency: {error}") from None
 
 
 class _Place(NamedTuple):
@@ -137,24 +137,25 @@ class _Surroundings:
 class _Check:
     """The check of one mission."""
 
-    def __init__(self, mission: Mission, standing: Sequence[Obstacle], found: Feasibility) -> None:
-        self._mission, self._found = mission, found
+    def __init__(self, mission: Mission, standing: Sequence[Obstacle]) -> None:
+        self._mission, self._found = mission, Feasibility()
         self._surroundings = _Surroundings(mission, standing)
         self._resting = -mission.system.resting_altitude
 
-    def run(self) -> None:
+    def run(self) -> Feasibility:
         """Look at all places and legs."""
         pad = _Place("the pad", "pad", np.array([0.0, 0.0, self._resting]))
         found, margin = self._surroundings.obstruction(pad.position), self._surroundings.margin
         if found is not None and found.distance <= 0.0:
             self._found.problems.append(f"pad: {found.lacking(0.0)}")
-            return
+            return self._found
         if found is not None:
             self._found.notes.append(f"pad: {found.lacking(margin)}")
         if isinstance(self._mission.reference, Route):
             self._route(pad, self._mission.reference)
         else:
             self._pass("the curve", curve_places(self._mission.reference))
+        return self._found
 
     def _route(self, pad: _Place, route: Route) -> None:
         here, legs = pad, route.first_lap(TRIED_LEGS)
@@ -200,7 +201,8 @@ class _Check:
         along = np.linspace(start, goal, 2 + int(straight / SPACING))
         obstacle = next(iter(self._surroundings.in_the_way(along)), "the fence")
         if math.isfinite(length := self._surroundings.way(start, goal)):
-            self._found.ways.append(Way(there.source, obstacle, straight, length))
+            led = f"{length:.1f} m in place of {straight:.1f} m"
+            self._found.ways.append(f"{there.source}: {obstacle} {_LED_ROUND}, {led}")
         else:
             reason = f"there is no way from {here.name} to {there.name}: it is blocked by {obstacle}"
             self._found.problems.append(f"{there.source}: {reason}")
@@ -208,7 +210,7 @@ class _Check:
     def _pass(self, source: str, places: Array) -> None:
         """Note what is nearer to a curve than the margin."""
         for name in self._surroundings.in_the_way(places):
-            self._found.notes.append(f"{source}: {name} is in the way: the safety filter or a detour leads round it")
+            self._found.notes.append(f"{source}: {name} {_LED_ROUND}")
 
 
 def _half_width(parameters: SystemParameters) -> float:

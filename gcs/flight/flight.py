@@ -32,12 +32,7 @@ class Flight:
     """Flight phases and control step. Times are the team's (s); it neither sends nor receives."""
 
     def __init__(
-        self,
-        mission: Mission,
-        team: Team,
-        control: ControlLoop,
-        alarms: AlarmLog,
-        obstacle_map: ObstacleMap | None = None,
+        self, mission: Mission, team: Team, control: ControlLoop, alarms: AlarmLog, obstacle_map: ObstacleMap
     ) -> None:
         self.mission, self.control, self._settings = mission, control, mission.system.flight
         settings = self._settings

@@ -47,27 +47,21 @@ class Recorder(Protocol):
 
     def datagrams(self, now: float, datagrams: Sequence[bytes]) -> None:
         """Record datagrams, sent or received."""
-        ...
 
     def end_exchange(self) -> None:
         """Write what was recorded of the datagrams of one exchange."""
-        ...
 
     def step(self, flight: Flight, time: float, record: StepRecord | None) -> None:
         """Record one control step at team ``time``."""
-        ...
 
     def compute_times(self, time: float, decision: Decision, parts: Sequence[float]) -> None:
         """Record the compute times (s) of the control step at team ``time``, as :class:`Part` orders them."""
-        ...
 
     def obstacles(self, obstacle_map: ObstacleMap, time: float) -> None:
         """Record the obstacle map at team ``time``, once a control step."""
-        ...
 
     def alarm(self, alarm: Alarm) -> None:
         """Record a new alarm."""
-        ...
 
 
 class GroundStation:
@@ -203,8 +197,6 @@ class GroundStation:
 
     def _update_obstacle_map(self, time: float) -> None:
         obstacle_map, estimator = self.flight.system.obstacle_map, self.flight.control.estimator
-        if obstacle_map is None:
-            return
         obstacle_map.placement.range_sensors.set_failed(
             {i for i, link in enumerate(self.links) if not link.status.obstacle_sensing_valid}, time
         )
@@ -217,8 +209,7 @@ class GroundStation:
         """Compare estimated vehicle states with what each system id sends; place the detections by them."""
         estimated = self.flight.control.estimator.measurement_model.vehicles(record.estimate.time, record.estimate.x)
         self._id_check.compare(estimated.values[:, :3])
-        if (obstacle_map := self.flight.system.obstacle_map) is not None:
-            obstacle_map.placement.poses.add_estimated(estimated)
+        self.flight.system.obstacle_map.placement.poses.add_estimated(estimated)
 
     def _encoded(
         self, now: float, messages: Sequence[Sequence[Packed]], carries_setpoints: Sequence[bool]

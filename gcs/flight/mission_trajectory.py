@@ -2,17 +2,16 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
-from gcs.flight.curve_limits import curve_limits
 from gcs.mission.model import Lissajous, Mission
 from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Speed, TakeOff
 from idc_controller.arrays import Array
 from idc_controller.trajectory import paths
 from idc_controller.trajectory.lissajous import LissajousTrajectory
 from idc_controller.trajectory.lissajous_curve import LissajousCurve
-from idc_controller.trajectory.settings import Limits
 from idc_controller.trajectory.trajectory import Trajectory
 from idc_controller.trajectory.waypoints import WaypointTrajectory
 
@@ -32,7 +31,7 @@ class MissionTrajectory:
         self.landing_from = math.inf
         """Time at which the final descent begins (s); inf while that is not known."""
         climb, legs = self._split(mission, position)
-        up = WaypointTrajectory(position, climb, self._vertical_limits(), start=start)
+        up = WaypointTrajectory(position, climb, self._motion.climb_limits, start=start)
         self._climb: Trajectory | None = up
         along = up.then(lambda time, here: self._flown(mission, legs, time, here))
         self.trajectory: Trajectory = along.then(self._land)
@@ -93,18 +92,19 @@ class MissionTrajectory:
         if isinstance(mission.reference, Lissajous):
             return self._figure(mission.reference, time, here)
         speeds = [step.speed for step in mission.reference.steps if isinstance(step, Speed) and step.speed]
-        limits = self._limits(max([self._motion.speed, mission.reference.speed, *speeds]))
+        limits = replace(self._motion.limits, speed=max([self._motion.speed, mission.reference.speed, *speeds]))
         return WaypointTrajectory(here, self._legs(legs), limits, start=time, corner=self._motion.corner)
 
     def _figure(self, figure: Lissajous, time: float, here: Array) -> Trajectory:
         """Return the trajectory to the curve's beginning, along it, and back to ``here``."""
         curve = LissajousCurve(figure.amplitude, down=-figure.altitude)
         begin = curve.at(np.zeros((1, 1)))[0, 0]
-        limits = self._limits(self._motion.speed)
+        limits = self._motion.limits
         there = WaypointTrajectory(here, [paths.Leg(begin, self._motion.speed)], limits, start=time)
-        along_curve = curve_limits(self._motion)
         along = there.then(
-            lambda t, _: LissajousTrajectory(curve, figure.angular_frequency, figure.duration, along_curve, start=t)
+            lambda t, _: LissajousTrajectory(
+                curve, figure.angular_frequency, figure.duration, self._motion.curve_limits, start=t
+            )
         )
         return along.then(
             lambda t, end: WaypointTrajectory(end, [paths.Leg(here, self._motion.speed)], limits, start=t)
@@ -127,17 +127,9 @@ class MissionTrajectory:
         self.landing_from = time
         slow = np.array([here[0], here[1], self._ground - self._settings.slow_height])
         touch = np.array([here[0], here[1], self._ground + self._settings.landing_overshoot])
-        limits = self._vertical_limits()
+        limits = self._motion.climb_limits
         last = paths.Leg(touch, self._motion.landing_speed)
         if here[2] >= slow[2] - self._settings.slow_margin:
             return WaypointTrajectory(here, [last], limits, start=time)
         down = WaypointTrajectory(here, [paths.Leg(slow, self._motion.climb_speed)], limits, start=time)
         return down.then(lambda t, low: WaypointTrajectory(low, [last], limits, start=t))
-
-    def _vertical_limits(self) -> Limits:
-        m = self._motion
-        return Limits(m.climb_speed, m.acceleration, m.jerk, m.snap, m.climb_crackle)
-
-    def _limits(self, speed: float) -> Limits:
-        m = self._motion
-        return Limits(speed, m.acceleration, m.jerk, m.snap, m.crackle)

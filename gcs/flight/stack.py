@@ -30,7 +30,6 @@ from idc_controller.safety.filter_protocol import SafetyFilter
 from idc_controller.safety.give_way import give_way_time
 from idc_controller.safety.safety_filter import AvoidanceFilter
 from idc_controller.safety.settings import PlannerSettings
-from idc_controller.trajectory.settings import Limits
 
 
 def linear_model(config: SystemConfig) -> LinearModel:
@@ -83,7 +82,7 @@ def planner_settings(config: SystemConfig) -> PlannerSettings:
     """Return the settings of the safety QP, with those that other tables own."""
     return replace(
         config.safety.planner,
-        limits=motion_limits(config),
+        limits=config.motion.limits,
         margin=config.avoidance.margin,
         barrier_rates=config.avoidance.barrier_rates,
     )
@@ -103,7 +102,7 @@ def guidance(
     stages = config.safety.planner.chain.times
     settings = replace(
         config.guidance.navigator,
-        limits=motion_limits(config),
+        limits=config.motion.limits,
         margin=config.avoidance.margin,
         detour=config.guidance.detour,
     )
@@ -115,7 +114,7 @@ def guidance(
 
 def speed_by_sight(config: SystemConfig, model: LinearModel, sight: Sight) -> SpeedBySight:
     """Return the limit of the progress by what range sensors have seen."""
-    settings = replace(config.guidance.sight, limits=motion_limits(config), margin=config.avoidance.margin)
+    settings = replace(config.guidance.sight, limits=config.motion.limits, margin=config.avoidance.margin)
     formation = tilted_formation(config)
     return SpeedBySight(sight, settings, formation, sensor_view(config), reaction_time(config, formation))
 
@@ -156,12 +155,6 @@ def resting_place(
     """Return the choice of where a team without set-points comes to rest, clear of ``obstacles`` and in ``area``."""
     settings = replace(config.guidance.resting_place, margin=config.avoidance.margin)
     return RestingPlace(model.parameters, obstacles, settings, config.braking(), area)
-
-
-def motion_limits(config: SystemConfig) -> Limits:
-    """Return the limits of the motion between waypoints."""
-    motion = config.motion
-    return Limits(motion.speed, motion.acceleration, motion.jerk, motion.snap, motion.crackle)
 
 
 def controller(

@@ -170,7 +170,7 @@ class TelemetryRouter:
                 routed.setpoints.append((received, index, time, until, link.clock.spread, link.setpoints.delay_max))
             elif message_id in _SCAN:
                 # Scans from before a clock jump have the stamp of another pose.
-                if obstacle_map is not None and now - link.clock.jumped_at > self._clock_settled:
+                if now - link.clock.jumped_at > self._clock_settled:
                     if message_id == RETURNS:
                         obstacle_map.placement.add(scan_returns(received), index, time, now)
                     else:
@@ -189,10 +189,10 @@ class TelemetryRouter:
         for sample in taken:
             if sample.source != PAYLOAD:
                 self._id_check.add(sample)
-        if (obstacle_map := self._flight.system.obstacle_map) is not None:
-            for sample in used:
-                if sample.source != PAYLOAD:
-                    obstacle_map.placement.poses.add_measured(sample)
+        poses = self._flight.system.obstacle_map.placement.poses
+        for sample in used:
+            if sample.source != PAYLOAD:
+                poses.add_measured(sample)
 
     def _confirm_setpoint(
         self, received: Received, index: int, since: float, until: float, jitter: float, latency_max: float

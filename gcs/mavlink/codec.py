@@ -7,8 +7,8 @@ import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 from numpy.typing import NDArray
 
-from gcs.mavlink.frame_kernels import AROUND, CHECKSUM, HEADER, framed_run, messages_in
-from gcs.mavlink.frames import V2
+from gcs.mavlink.frame_kernels import framed_run, messages_in
+from gcs.mavlink.frames import AROUND, CHECKSUM, HEADER, V2
 from gcs.mavlink.layout import LAYOUTS, Packed, PackedRun, packed
 from gcs.mavlink.messages import Message, Received
 

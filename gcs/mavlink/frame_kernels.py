@@ -7,24 +7,19 @@ numbers and right checksums, one behind the other. That is how the points of a s
 import numpy as np
 from numpy.typing import NDArray
 
-from gcs.mavlink.frames import SIGNATURE, SIGNED, V1, V2
+from gcs.mavlink.frames import AROUND, CHECKSUM, HEADER, SIGNED, V1, V2, end_of_frame
 from idc_controller.arrays import Cells1, Cells2, Indices1, Indices2
 from idc_controller.compiled import inlined, kernel
 
 Bytes = NDArray[np.uint8]
 Rows = NDArray[np.int64]
 
-HEADER = 10
-"""Bytes of a MAVLink 2 frame before the payload."""
-CHECKSUM = 2
-"""Bytes of the checksum behind the payload."""
-AROUND = HEADER + CHECKSUM
-"""Bytes of a frame without signature beside the payload."""
 RUN_LIMIT = 256
 """Largest number of messages of a run: as many as there are sequence numbers."""
 _SEQUENCE, _STAMP = 4, 4
 _STAMP_BYTES = 8
 """Bytes of the stamp of a record."""
+_end_of_frame = inlined(end_of_frame)
 
 
 @inlined
@@ -36,20 +31,6 @@ def _checksum(data: Bytes, start: int, end: int, extra: int) -> int:
         low ^= (low << 4) & 0xFF
         crc = (crc >> 8) ^ (low << 8) ^ (low << 3) ^ (low >> 4)
     return crc
-
-
-@inlined
-def _end_of_frame(data: Bytes, start: int, size: int) -> int:
-    """Return the end of the frame that begins at ``start`` of ``data[:size]``; 0: no whole frame begins there.
-
-    As :func:`gcs.mavlink.frames.end_of_frame`.
-    """
-    end = 0
-    if data[start] == V2 and start + 2 < size:
-        end = start + data[start + 1] + (AROUND + SIGNATURE if data[start + 2] & SIGNED else AROUND)
-    elif data[start] == V1 and start + 1 < size:
-        end = start + data[start + 1] + 8
-    return end if end <= size else 0
 
 
 @inlined

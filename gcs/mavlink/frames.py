@@ -2,6 +2,9 @@
 
 import re
 
+import numpy as np
+from numpy.typing import NDArray
+
 V1, V2 = 0xFE, 0xFD
 """First byte of a frame of MAVLink 1 and 2."""
 SIGNED = 0x01
@@ -9,30 +12,26 @@ SIGNED = 0x01
 SIGNATURE = 13
 """Bytes of a signature, at the end of a frame."""
 
+HEADER = 10
+"""Bytes of a MAVLink 2 frame before the payload."""
+CHECKSUM = 2
+"""Bytes of the checksum behind the payload."""
+AROUND = HEADER + CHECKSUM
+"""Bytes of a MAVLink 2 frame without signature beside the payload."""
 _MARKER = re.compile(b"[%c%c]" % (V2, V1))
 
 
-def end_of_frame(datagram: bytes, start: int) -> int:
-    """Return the end of the frame that begins at ``start``; 0: no whole frame begins there.
+def end_of_frame(datagram: bytes | NDArray[np.uint8], start: int, size: int) -> int:
+    """Return the end of the frame that begins at ``start`` of ``datagram[:size]``; 0: no whole frame begins there.
 
-    Args:
-        datagram: Frames of MAVLink 1 and 2, signed or not, and whatever else.
-        start: Position of a byte of it.
+    The kernels of :mod:`gcs.mavlink.frame_kernels` call it compiled, on an array of bytes.
     """
-    size = len(datagram)
+    end = 0
     if datagram[start] == V2 and start + 2 < size:
-        end = start + datagram[start + 1] + (12 + SIGNATURE if datagram[start + 2] & SIGNED else 12)
+        end = start + datagram[start + 1] + (AROUND + SIGNATURE if datagram[start + 2] & SIGNED else AROUND)
     elif datagram[start] == V1 and start + 1 < size:
         end = start + datagram[start + 1] + 8
-    else:
-        return 0
     return end if end <= size else 0
-
-
-def next_marker(datagram: bytes, start: int) -> int:
-    """Return the first position from ``start`` on at which a frame may begin, the end if there is none."""
-    found = _MARKER.search(datagram, start)
-    return len(datagram) if found is None else found.start()
 
 
 def spans(datagram: bytes) -> list[tuple[int, int]]:
@@ -40,9 +39,10 @@ def spans(datagram: bytes) -> list[tuple[int, int]]:
     found = []
     at, size = 0, len(datagram)
     while at < size:
-        if end := end_of_frame(datagram, at):
+        if end := end_of_frame(datagram, at, size):
             found.append((at, end))
             at = end
         else:
-            at = next_marker(datagram, at + 1)
+            marker = _MARKER.search(datagram, at + 1)
+            at = size if marker is None else marker.start()
     return found

@@ -4,12 +4,10 @@ That time starts when the first cradle releases, while the rotors spool up, and 
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcs.flight.mission_trajectory import MissionTrajectory
 from gcs.mission.model import Mission
-
-Array = NDArray[np.float64]
+from idc_controller.arrays import Array
 
 PAD_OFFSET = 0.003
 """Offset (m) of home from the pad by navigation noise. A figure eight begins with that distance, at rest at both ends,

@@ -1,16 +1,14 @@
 """The sensors of a simulated team as planning needs them: those of an entry point, as there is no other simulator."""
 
 from collections.abc import Sequence
-from importlib.metadata import entry_points
 from typing import Protocol
 
-from gcs.errors import GcsError
+from gcs.extras import simulator
 from gcs.mission.model import Mission
 from idc_controller.arrays import Array
 
 SENSORS = "cooplift.sensors"
 """Group of entry points, each a function of a mission that returns its :class:`TeamSensors`."""
-DEFAULT = "pybullet"
 
 
 class TeamSensors(Protocol):
@@ -24,14 +22,9 @@ class TeamSensors(Protocol):
             motion_time: since the obstacles have begun to move (s).
             states: true position, velocity, quaternion (body to world, w first), body rates (N, 13), NED, SI.
         """
-        ...
 
 
 def open_sensors(mission: Mission) -> TeamSensors:
-    """Return the sensors that are installed: :data:`DEFAULT`, or the only ones. Raises :class:`GcsError`: none."""
-    found = entry_points(group=SENSORS)
-    if not found:
-        raise GcsError(f"no simulated sensors are installed (entry points {SENSORS}): install cooplift again")
-    entry = found[DEFAULT] if DEFAULT in found.names else next(iter(found))
-    sensors: TeamSensors = entry.load()(mission)
+    """Return the sensors that are installed, by :func:`gcs.extras.simulator`. Raises :class:`GcsError`: none."""
+    sensors: TeamSensors = simulator(SENSORS, "sensors are").load()(mission)
     return sensors

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import coal
 import numpy as np
-from numpy.typing import NDArray
 
 from gcs.flight import stack
 from gcs.reproduce.scene import (
@@ -18,6 +17,7 @@ from gcs.reproduce.scene import (
     configuration,
     printed_reference,
 )
+from idc_controller.arrays import Array
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.geometry.formation import Formation
 from idc_controller.guidance.progress import Guidance
@@ -37,8 +37,6 @@ from idc_controller.rotations import euler_from_quaternion, rotation_from_quater
 from idc_controller.safety.filter_protocol import NoObstacles, SafetyFilter
 from idc_controller.trajectory.flatness import Load, flat_reference
 from idc_controller.trajectory.trajectory import Trajectory
-
-Array = NDArray[np.float64]
 
 PERIOD = 0.05  # s
 VISIBLE = 0.05

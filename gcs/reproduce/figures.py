@@ -7,16 +7,14 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from gcs.record.figures import FLOWN, LIMIT, OBSTACLE, SERIES, save_picture
 from gcs.record.run_data import RunData
 from gcs.record.summary import payload_angles
 from gcs.reproduce.scene import ALTITUDE, RADIUS
 from gcs.reproduce.simulation import LOST_TILT, Flown
+from idc_controller.arrays import Array
 from idc_controller.rotations import rotation_from_quaternion
-
-Array = NDArray[np.float64]
 
 TITLES = {
     "printed": "as printed", "corrected": "thrust and torque, flat reference", "project": "this project",

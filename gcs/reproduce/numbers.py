@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcs.record.run_data import RunData, read_run
 from gcs.record.summary import payload_angles
@@ -15,6 +14,7 @@ from gcs.reproduce.controls import PERIOD
 from gcs.reproduce.plan import DESIGN_MASS, Plan
 from gcs.reproduce.scene import configuration, printed_reference, shaped_figure
 from gcs.reproduce.work import Results
+from idc_controller.arrays import Array
 from idc_controller.model import nonlinear
 from idc_controller.model.linear import discretised
 from idc_controller.model.nonlinear import Inputs, SystemState
@@ -24,8 +24,6 @@ from idc_controller.paper.avoidance import linear_acceleration
 from idc_controller.paper.plant import Plant, PlantState
 from idc_controller.paper.state_space import Layout
 from idc_controller.parameters import SystemParameters, polygon_attachments
-
-Array = NDArray[np.float64]
 
 _STATES = 20
 """Random states at which the printed equations are evaluated."""

@@ -5,19 +5,16 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcs.config import SystemConfig
+from idc_controller.arrays import Array
 from idc_controller.geometry.obstacles import PredictedObstacle, Region
 from idc_controller.geometry.sphere import Sphere as SphereShape
 from idc_controller.trajectory.lissajous import LissajousTrajectory
 from idc_controller.trajectory.lissajous_curve import LissajousCurve
 from idc_controller.trajectory.paths import Leg
-from idc_controller.trajectory.settings import Limits
 from idc_controller.trajectory.trajectory import Trajectory
 from idc_controller.trajectory.waypoints import WaypointTrajectory
-
-Array = NDArray[np.float64]
 
 ALTITUDE, RATE = 5.0, 0.5
 """Altitude (m) and angular rate (rad/s) of eq:Lissajous."""
@@ -61,11 +58,13 @@ class ShapedFigure:
 def shaped_figure(duration: float) -> ShapedFigure:
     """Return a climb, then ``duration`` (s) at full rate, within the limits of the system file."""
     motion = configuration().motion
-    climb = Limits(motion.climb_speed, motion.acceleration, motion.jerk, motion.snap, motion.climb_crackle)
-    curve = Limits(motion.curve_speed, motion.curve_acceleration, motion.curve_jerk, motion.curve_snap)
-    up = WaypointTrajectory([0.0, 0.0, 0.0], [Leg(np.array([0.0, 0.0, -ALTITUDE]), motion.climb_speed)], climb)
+    up = WaypointTrajectory(
+        [0.0, 0.0, 0.0], [Leg(np.array([0.0, 0.0, -ALTITUDE]), motion.climb_speed)], motion.climb_limits
+    )
     up.position(ALTITUDE / motion.climb_speed + 20.0)  # its end is known only after a sample beyond it
-    figure = LissajousTrajectory(LissajousCurve(AMPLITUDE, -ALTITUDE), RATE, duration, curve, start=up.end)
+    figure = LissajousTrajectory(
+        LissajousCurve(AMPLITUDE, -ALTITUDE), RATE, duration, motion.curve_limits, start=up.end
+    )
     begin, phase = figure.full_rate[0], float(figure.phase(figure.full_rate[0]))
     # The phase is monotonic: the time of a quarter turn is before or after the full rate begins.
     times = np.linspace(up.end, begin, 2000)

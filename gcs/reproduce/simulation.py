@@ -5,16 +5,14 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcs.record.clearance import Formation, ObstacleTrack
 from gcs.reproduce.controls import PERIOD, Control, PaperControl, PaperVariant, ProjectControl
 from gcs.reproduce.scene import MARGIN, RADIUS, Sphere, configuration, shaped_figure, two_spheres
+from idc_controller.arrays import Array, Mask
 from idc_controller.geometry.sphere import Sphere as SphereShape
 from idc_controller.paper.plant import Plant, PlantState
 from idc_controller.rotations import euler_from_quaternion
-
-Array = NDArray[np.float64]
 
 PROJECT, EXTRAPOLATING = "project", "extrapolating"
 """This project's controller, given where the spheres will be; given their motion now only, as the paper's filter is.
@@ -60,7 +58,7 @@ class Flown:
     uav_position: Array
     uav_quaternion: Array
     u: Array
-    avoiding: NDArray[np.bool_]
+    avoiding: Mask
     clearance: Array
     """Between hull and spheres (T, number of spheres) (m)."""
     infeasible_tracking: int = 0

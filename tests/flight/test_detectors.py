@@ -30,6 +30,13 @@ NAMES = (*(f"vehicle {i}" for i in range(1, N + 1)), "payload")
 KEYS = (*((uav, Position) for uav in range(N)), (PAYLOAD, Position))
 
 
+NOTHING_SEEN = SimpleNamespace(
+    placement=SimpleNamespace(range_sensors=SimpleNamespace(silent=(), displaced=())),
+    take_deleted_tracks=list,
+    map_offsets={},
+)
+
+
 class Monitored:
     """Steps at 20 Hz of a flight whose telemetry is complete, with normal innovations of the positions."""
 
@@ -37,7 +44,7 @@ class Monitored:
         self.links = tuple(VehicleLink(i, None) for i in range(1, N + 1))
         self.flight = SimpleNamespace(
             mission=SimpleNamespace(system=SYSTEM),
-            system=SimpleNamespace(team=SimpleNamespace(links=self.links), obstacle_map=None),
+            system=SimpleNamespace(team=SimpleNamespace(links=self.links), obstacle_map=NOTHING_SEEN),
             control=SimpleNamespace(estimator=stack.estimator(SYSTEM, MODEL)),
         )
         self.log, self.id_check = AlarmLog(), SystemIdCheck(N)

@@ -56,6 +56,7 @@ def state(*links, lost=()):
         None,
         PlanMonitor(4),
         None,
+        None,
     )
     return FailsafeState(system, AlarmLog())
 
@@ -230,7 +231,8 @@ def test_obstacle_over_the_landing_place_is_named_with_the_missing_metres():
     )
     assert found and float(found[1]) + float(found[2]) == pytest.approx(0.6, abs=0.011)
     assert float(found[1]) == pytest.approx(1.6 - 0.5 - 0.65, abs=0.1)
-    system = System(team, None, None, payload, None, PlanMonitor(4), None, None, config.flight.failsafe, 0.6)
+    on_map = SimpleNamespace(predict=lambda times: [])
+    system = System(team, None, None, payload, None, PlanMonitor(4), None, on_map, config.flight.failsafe, 0.6)
     assert Failsafe.DESCENT_STALLED.condition(system, moment).reason == "the payload does not descend"
 
 
@@ -246,7 +248,7 @@ def impact(height, counts, payload=0, monitor=None):
     team = SimpleNamespace(links=links, parameters=config.parameters())
     monitor = monitor or ImpactMonitor([])
     monitor.links = links
-    system = System(team, None, None, PayloadMonitor(config.parameters(), config.flight), None, None, monitor)
+    system = System(team, None, None, PayloadMonitor(config.parameters(), config.flight), None, None, monitor, None)
     return Failsafe.IMPACT.condition(system, Moment(Phase.FLY, 50.0, 100.0, estimate=estimate)), monitor
 
 

@@ -4,7 +4,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gcs.mavlink.frames import SIGNED, V1, V2, next_marker, spans
+from gcs.mavlink.frames import SIGNED, V1, V2, spans
 
 
 def frame(stamp: int = 7, **options: bool) -> bytes:
@@ -55,12 +55,6 @@ def test_bytes_outside_frames_are_skipped() -> None:
     assert frames_in(signed_frame()[:-1]) == []
     assert frames_in(b"\xfd") == []
     assert frames_in(bytes(65507) + a) == [a]
-
-
-def test_next_marker_is_end_without_a_marker() -> None:
-    assert next_marker(b"\x00\xfe\x00\xfd\x00", 0) == 1
-    assert next_marker(b"\x00\xfe\x00\xfd\x00", 2) == 3
-    assert next_marker(b"\x00\xfe\x00\xfd\x00", 4) == 5
 
 
 PIECES = st.one_of(

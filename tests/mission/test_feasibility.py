@@ -85,7 +85,7 @@ def test_missing_metres_are_those_for_the_margin(tmp_path):
 
 def test_obstacle_that_is_not_on_the_map_is_not_looked_at(tmp_path):
     found = checked(tmp_path, pole(0.2, 0.1, known=False) + pole(4.0, 0.0, known=False).replace("mast", "mast 2"))
-    assert (found.ways, found.notes) == ((), ())
+    assert (found.ways, found.notes) == ([], [])
 
 
 def test_what_is_led_round_is_a_note_with_the_length_of_the_way(tmp_path):
@@ -105,7 +105,7 @@ def test_gap_is_passed_where_the_formation_fits(tmp_path, gap, passes):
     middle = gap / 2.0 + side / 2.0
     walls = wall(4, middle, 90, side) + wall(4, -middle, 90, side)
     if passes:
-        assert checked(tmp_path, walls).notes == ()
+        assert checked(tmp_path, walls).notes == []
     else:
         with pytest.raises(UnusableInput, match="there is no way from the pad to the waypoint"):
             checked(tmp_path, walls)
@@ -119,7 +119,7 @@ def test_near_waypoint_that_may_be_missed_is_a_note(tmp_path):
 
 def test_curve_past_an_obstacle_is_a_note(tmp_path):
     found = preflight(read_mission("missions/figure_eight_spheres.toml"))
-    assert found.notes == ("the curve: static is in the way: the safety filter or a detour leads round it",)
+    assert found.notes == ["the curve: static is in the way: the safety filter or a detour leads round it"]
 
 
 MISSIONS = [

@@ -8,7 +8,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gcs.app.arguments import VEHICLES, add_settings
+from gcs.app.arguments import add_system_arguments
 from gcs.app.exit_status import ExitStatus
 from gcs.app.imports import importing
 from gcs.errors import UnusableInput
@@ -22,11 +22,7 @@ DESCRIPTION = "Reads a mission and says what will be flown, or every reason why 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument("mission", type=Path, metavar="MISSION", help="mission file, or a name of gcs missions")
-    parser.add_argument(
-        "--vehicles", type=VEHICLES, metavar="N", help="number of vehicles in place of the system file's"
-    )
-    parser.add_argument("--config", type=Path, metavar="C", help="system file in place of the mission's")
-    add_settings(parser)
+    add_system_arguments(parser)
     parser.add_argument("--json", action="store_true", help="print legs, notes and reasons as JSON")
     parser.add_argument("--plot", type=Path, metavar="FILE", help="draw the map of the mission, too: .png, .svg, .pdf")
 

@@ -5,7 +5,7 @@ import json
 from contextlib import ExitStack
 from pathlib import Path
 
-from gcs.app.arguments import CONTROLLERS, SEED, SPEED, VEHICLES, add_settings
+from gcs.app.arguments import CONTROLLERS, SEED, SPEED, add_system_arguments
 from gcs.app.imports import importing
 from gcs.app.logs import LOG
 from gcs.errors import UnusableInput
@@ -39,9 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--controller", choices=CONTROLLERS, default="idc",
         help="idc: tracking with obstacle avoidance (default); mpc: tracking only; paper: the paper's own filter",
     )  # fmt: skip
-    add("--config", type=Path, metavar="C", help="system file in place of the mission's")
-    add_settings(parser)
-    add("--vehicles", type=VEHICLES, metavar="N", help="number of vehicles in place of the system file's")
+    add_system_arguments(parser)
     add("--seed", type=SEED, metavar="S", help="seed of the noise in place of the mission's")
     add("--run-dir", type=Path, metavar="D", help="run folder (default: runs/<mission>-<number>)")
     add("--connect", action="extend", nargs="*", default=None, metavar="URL",

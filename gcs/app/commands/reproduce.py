@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 import csv
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from gcs.app.arguments import number_of_jobs
+from gcs.app.exit_status import ExitStatus
 from gcs.errors import UnusableInput, UnwritableRecord
 from gcs.mission.own import own_folder
 from gcs.mission.read import read_mission
@@ -24,8 +26,6 @@ from gcs.reproduce.numbers import matrices, numbers
 from gcs.reproduce.page import paper_text, rounded, write_numbers, write_page
 from gcs.reproduce.plan import Plan, plan
 from gcs.reproduce.work import Results
-
-DONE, INTERRUPTED = 0, 130
 
 DESCRIPTION = """\
 Regenerates the figures and numbers of the paper into one folder: as printed, as corrected, and with this project's
@@ -73,17 +73,17 @@ def run(arguments: argparse.Namespace) -> int:
     console = Console(highlight=False, soft_wrap=True)
     begin = time.monotonic()
     try:
-        with _Progress(console, chosen) as progress:
-            results = work.run(chosen, missions, out, arguments.jobs, progress.done)
+        with _progress(console, chosen) as done:
+            results = work.run(chosen, missions, out, arguments.jobs, done)
             found = rounded(numbers(chosen, results))
             write_numbers(out / "numbers.json", found)
             (out / "paper.md").write_text(paper_text(found), encoding="utf-8")
             _write_matrices(out / "matrices")
-            progress.done("numbers and matrices")
-            pictures = _draw(chosen, results, found, out, progress.done)
+            done("numbers and matrices")
+            pictures = _draw(chosen, results, found, out, done)
     except KeyboardInterrupt:
         Console(stderr=True, highlight=False).print(f"interrupted: {out} is not complete")
-        return INTERRUPTED
+        return ExitStatus.INTERRUPTED
     except UnwritableFile as error:
         raise UnwritableRecord(str(error)) from None
     except OSError as error:
@@ -91,7 +91,7 @@ def run(arguments: argparse.Namespace) -> int:
     page = write_page(out, found, pictures, time.monotonic() - begin)
     console.print(_overview(found), markup=False)
     console.print(f"Results   {page}", markup=False)
-    return DONE
+    return ExitStatus.DONE
 
 
 def _write_matrices(folder: Path) -> None:
@@ -147,27 +147,20 @@ def _overview(found: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
-class _Progress:
-    """A bar at a terminal; elsewhere one line for each thing done."""
+@contextmanager
+def _progress(console: Console, chosen: Plan) -> Iterator[Callable[[str], None]]:
+    """Give what takes the name of each thing done: a bar at a terminal, elsewhere one line for each."""
+    bar = Progress(
+        TextColumn("reproduce"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[last]}"),
+        TimeElapsedColumn(), console=console, transient=True, disable=not console.is_terminal,
+    )  # fmt: skip
+    drawings = 11 + (2 if chosen.flights else 0)
+    task = bar.add_task("", total=len(chosen.cases) + len(chosen.flights) + 1 + drawings, last="")
 
-    def __init__(self, console: Console, chosen: Plan) -> None:
-        self._console = console
-        self._bar = Progress(
-            TextColumn("reproduce"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[last]}"),
-            TimeElapsedColumn(), console=console, transient=True, disable=not console.is_terminal,
-        )  # fmt: skip
-        drawings = 11 + (2 if chosen.flights else 0)
-        self._task = self._bar.add_task("", total=len(chosen.cases) + len(chosen.flights) + 1 + drawings, last="")
+    def done(name: str) -> None:
+        bar.update(task, advance=1, last=name)
+        if not console.is_terminal:
+            console.print(name, markup=False)
 
-    def done(self, name: str) -> None:
-        """One more."""
-        self._bar.update(self._task, advance=1, last=name)
-        if not self._console.is_terminal:
-            self._console.print(name, markup=False)
-
-    def __enter__(self) -> _Progress:
-        self._bar.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._bar.stop()
+    with bar:
+        yield done
