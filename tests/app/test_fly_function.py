@@ -19,6 +19,7 @@ import pytest
 from programs import ENVIRONMENT, gcs_fly
 
 import gcs
+from gcs import extras
 from gcs.app import in_process
 from gcs.app.imports import importing
 from gcs.app.in_process import FlightInProcess
@@ -130,7 +131,7 @@ def test_mission_built_with_an_unusable_fault_is_refused(fault, reason):
 
 
 def test_installation_without_a_world_is_an_error(tmp_path, monkeypatch):
-    monkeypatch.setattr(in_process, "entry_points", lambda group: ())
+    monkeypatch.setattr(extras, "entry_points", lambda group: ())
     with pytest.raises(GcsError, match=r"no simulated world is installed \(entry points cooplift.world\)"):
         gcs.fly(HOP)
 
@@ -141,7 +142,7 @@ def test_world_is_that_of_an_entry_point(monkeypatch):
 
     monkeypatch.setitem(sys.modules, "another_engine", SimpleNamespace(world=world))
     entry = EntryPoint("another", "another_engine:world", in_process.WORLDS)
-    monkeypatch.setattr(in_process, "entry_points", lambda group: EntryPoints([entry]))
+    monkeypatch.setattr(extras, "entry_points", lambda group: EntryPoints([entry]))
     with pytest.raises(UnusableInput, match="no hop in this world"):
         gcs.fly(HOP)
 
