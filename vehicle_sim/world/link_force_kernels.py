@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from idc_controller import rotations_float
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array1, Array2
 from idc_controller.compiled import inlined, kernel
 from vehicle_sim.world import world_state
 from vehicle_sim.world.velocity_product_kernels import dot
@@ -14,12 +14,10 @@ _into_body = inlined(rotations_float.into_body)
 _upward_axis = inlined(world_state.upward_axis)
 
 
-@kernel(
-    "float64[::1](float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1], float64[:, ::1], float64, float64)"
-)
+@kernel
 def link_tensions(
-    now: Array, before: Array, parts: Array, thrusts: Array, external: Array, gravity: float, step: float
-) -> Array:
+    now: Array2, before: Array2, parts: Array2, thrusts: Array1, external: Array2, gravity: float, step: float
+) -> Array1:
     """Return the tension of each link over a step (N,) (N); negative: compression.
 
     Along the link m a is the sum of weight, thrust, external force and the link's own. The accelerations are the

@@ -49,7 +49,7 @@ def records(run_dir: Path) -> Iterator[Record]:
     at = 0
     while at + _STAMP < len(log):
         start = at + _STAMP
-        end = end_of_frame(log, start)
+        end = end_of_frame(log, start, len(log))
         if not end:
             if log[start] in (V1, V2):  # its end is missing
                 return
