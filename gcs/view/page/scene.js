@@ -1,6 +1,6 @@
 /** The flight in three dimensions: what it was at the clock's time, beside what the ground station believed. */
 
-import { Color, DirectionalLight, HemisphereLight, Scene as World, WebGLRenderer } from 'three';
+import { Color, DirectionalLight, HemisphereLight, Scene as World, Vector3, WebGLRenderer } from 'three';
 import { h } from './dom.js';
 import { besideClearance, Cameras } from './scene/cameras.js';
 import { Clearance } from './scene/clearance.js';
@@ -24,6 +24,7 @@ import { Readout } from './scene/readout.js';
 
 /** @type {Record<string, number[]>} steps right and up */
 const TURNS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+const LIT_FROM = new Vector3(0.3, 0.8, 0.2);
 const LARGE = 60; // m: in a wider flight the formation would be too small in the overview
 
 export class Scene {
@@ -39,7 +40,9 @@ export class Scene {
     const canvas = h('canvas.scene-canvas', { role: 'img', 'aria-label': 'the flight in three dimensions; arrow keys turn it', tabIndex: 0 });
     this.renderer = new WebGLRenderer({ canvas, antialias: true, stencil: true });
     element.append(canvas);
-    canvas.addEventListener('keydown', (event) => this.turn(event));
+    // The player takes the keys at the document: those that are for the canvas are taken before.
+    this.onKey = (/** @type {KeyboardEvent} */ event) => this.turn(event);
+    window.addEventListener('keydown', this.onKey, { capture: true });
     this.palette = new Palette();
     this.labels = new Labels(element);
     this.world = new World();
@@ -80,9 +83,8 @@ export class Scene {
   /** @param {Run} run @param {Run} [ghost] */
   build(run, ghost) {
     const { palette, labels, world } = this;
-    const sun = new DirectionalLight(new Color(0xffffff), 1.7);
-    sun.position.set(-0.5, 1, 0.7);
-    world.add(sun, new HemisphereLight(new Color(0xffffff), new Color(0xb0b4ba), 1.9));
+    this.sun = new DirectionalLight(new Color(0xffffff), 1.7);
+    world.add(this.sun, new HemisphereLight(new Color(0xffffff), new Color(0xb0b4ba), 1.9));
     this.formation = new Formation(run, palette, 'flown', labels);
     this.ghost = ghost ? new Formation(ghost, palette, 'ghost') : null;
     this.ghostTrail = ghost ? new Trail(ghost, palette, 'series-7') : null;
@@ -156,10 +158,11 @@ export class Scene {
     this.invalidate();
   }
 
-  /** Turn by the arrow keys, which then do not move the time. @param {KeyboardEvent} event */
+  /** Turn by the arrow keys, which do not move the time while the keyboard has reached the canvas. @param {KeyboardEvent} event */
   turn(event) {
     const turn = TURNS[event.key];
-    if (!turn || event.ctrlKey || event.altKey || event.metaKey) return;
+    const canvas = this.renderer.domElement;
+    if (!turn || event.target !== canvas || !canvas.matches(':focus-visible') || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
     event.stopPropagation();
     this.cameras.turn(turn[0], turn[1]);
@@ -238,6 +241,8 @@ export class Scene {
     if (this.isStale) this.update();
     const places = [this.formation.payload, ...this.formation.uavs.map(({ mesh }) => mesh)].map(({ position }) => position);
     this.obstacles.reveal((place) => this.cameras.eye(place), [...places, ...this.clearance.ends]);
+    // From beside the camera, a bit higher: what is seen is lit, and its faces differ.
+    this.cameras.from(this.sun.position).add(LIT_FROM);
     this.renderer.render(this.world, this.cameras.current);
     this.labels.place(this.cameras.current, this.width ?? 1, this.height ?? 1, this.clearance.ends);
     // Only now: the controls of the camera ask for a further frame when they are moved along.
@@ -248,6 +253,7 @@ export class Scene {
   dispose() {
     cancelAnimationFrame(this.frame);
     this.observer.disconnect();
+    window.removeEventListener('keydown', this.onKey, { capture: true });
     this.cameras.dispose();
     this.panel.dispose();
     this.readout.dispose();

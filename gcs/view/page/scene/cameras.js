@@ -137,6 +137,12 @@ export class Cameras {
     this.above.updateProjectionMatrix();
   }
 
+  /** The direction to the camera. @param {Vector3} into */
+  from(into) {
+    if (this.kind === 'top') return into.set(0, 1, 0);
+    return into.copy(this.perspective.position).sub(this.orbit.target).normalize();
+  }
+
   /** From where a place is seen. @param {Vector3} place */
   eye(place) {
     return this.kind === 'top' ? place.clone().setY(1000) : this.perspective.position;

@@ -64,7 +64,7 @@ export class Labels {
       const inside = at.z > -1 && at.z < 1 && Math.abs(at.x) < 1.1 && Math.abs(at.y) < 1.1;
       const x = (0.5 + 0.5 * at.x) * width;
       const y = (0.5 - 0.5 * at.y) * height;
-      const spot = inside && label.visible && label.layer() && (this.visible || label.rank <= CLEARANCE) ? label.spot(x, y, taken) : null;
+      const spot = inside && label.visible && label.layer() && (this.visible || label.rank <= CLEARANCE) ? label.spot(x, y, taken, width) : null;
       label.element.hidden = !spot;
       if (!spot) continue;
       taken.push(spot);
@@ -105,13 +105,15 @@ export class Label {
    * @param {number} x px
    * @param {number} y px
    * @param {number[][]} taken by others
+   * @param {number} across px, the width of the scene: the words of what is in it are, too
    * @returns {number[]|null} left, top, right, bottom
    */
-  spot(x, y, taken) {
+  spot(x, y, taken, across) {
     this.size ??= [this.element.offsetWidth, this.element.offsetHeight];
     const [width, height] = this.size;
-    const spots = PLACES[this.kind].map(([across, down, right, below]) => {
-      const left = x + across * width + right;
+    const spots = PLACES[this.kind].map(([aside, down, right, below]) => {
+      const wanted = x + aside * width + right;
+      const left = x > 0 && x < across ? Math.max(2, Math.min(wanted, across - width - 2)) : wanted;
       const top = y + down * height + below;
       return [left, top, left + width, top + height];
     });
