@@ -105,7 +105,7 @@ sys.stdout.buffer.write(distances.tobytes())
 @pytest.mark.numerics
 def test_kernels_of_numba_give_the_same_bytes_for_every_processor(tmp_path):
     def distances(**variables):
-        environment = {**ENVIRONMENT, "PYTHONPATH": f"{ROOT}{os.pathsep}{ROOT / 'tests'}", **variables}
+        environment = {**ENVIRONMENT, "PYTHONPATH": f"{ROOT}{os.pathsep}{ROOT / 'tests' / 'support'}", **variables}
         return subprocess.run(
             [sys.executable, "-c", _DISTANCES], env=environment, capture_output=True, check=True
         ).stdout
