@@ -2,6 +2,7 @@
 
 import csv
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,18 @@ def write_csv(path: Path, columns: Sequence[str], rows: Iterable[Mapping[str, An
     except OSError as error:
         raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
     return path
+
+
+def write_records(path: Path, kind: type[Any], records: Iterable[Any], decimals: str = "") -> Path:
+    """Write dataclasses of one ``kind`` as a CSV file, floats in the format ``decimals``.
+
+    Raises :class:`UnusableInput` where it cannot.
+    """
+    rows = (
+        {name: format(value, decimals) if isinstance(value, float) else value for name, value in asdict(record).items()}
+        for record in records
+    )
+    return write_csv(path, [field.name for field in fields(kind)], rows)
 
 
 def write_results(out: Path, columns: Sequence[str], results: Sequence[Result], name: str = "results") -> list[Path]:
@@ -88,8 +101,8 @@ def extreme(
 
 def markdown_table(rows: Sequence[Mapping[str, str]]) -> str:
     """Return ``rows``, cells by title, one at least, as a table in Markdown."""
-    lines = [[*rows[0]], ["---"] * len(rows[0]), *([*row.values()] for row in rows)]
-    return "".join(f"| {' | '.join(cells)} |\n".replace("| --- |", "|---|") for cells in lines)
+    head, *lines = (f"| {' | '.join(cells)} |\n" for cells in (rows[0], *(row.values() for row in rows)))
+    return "".join([head, f"|{'---|' * len(rows[0])}\n", *lines])
 
 
 def headline(results: Sequence[Result], what: str, passed_means: str) -> Text:

@@ -296,7 +296,7 @@ def test_suite_writes_missions_with_their_plans_and_flies_a_mission_as_it_is(fol
     own = folder / "own.toml"
     own.write_text('[mission]\nname = "own"\n\n[reference]\nkind = "waypoints"\npoints = [[9.0, 0.0, -4.0]]\n')
     courses = suite(test_file(folder), list_file(folder, LINE), own)
-    campaign = Campaign(Suite(tuple(courses), 7, 2.5), folder / "out")
+    campaign = Campaign(Suite(courses=tuple(courses), seed=7, speed=2.5), folder / "out")
     names = [plan.mission.name for plan in campaign.plans]
     assert names == ["0001-case.toml", "0002-two.toml", "own.toml"]
     assert campaign.plans[2].mission == own

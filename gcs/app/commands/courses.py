@@ -107,7 +107,14 @@ def _suite(arguments: argparse.Namespace) -> tuple[Suite, str]:
             raise UnusableInput(f"--{option.replace('_', '-')} is for random scenarios, not for --suite")
     speed = arguments.speed or SPEED
     courses = read_suite(arguments.suite, arguments.config, speed, arguments.seed)
-    suite = Suite(tuple(courses), arguments.seed, speed, arguments.controller, arguments.config, grid=arguments.grid)
+    suite = Suite(
+        courses=tuple(courses),
+        seed=arguments.seed,
+        speed=speed,
+        controller=arguments.controller,
+        config=arguments.config,
+        grid=arguments.grid,
+    )
     return suite, plain(arguments.suite[0].stem)
 
 

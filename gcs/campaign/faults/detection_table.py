@@ -3,8 +3,7 @@
 import statistics
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, fields
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Annotated
 
 from pydantic import Field
@@ -12,7 +11,7 @@ from pydantic import Field
 from gcs.campaign.faults.cases import Seeds
 from gcs.campaign.faults.sources import ISOLATIONS, NONE
 from gcs.campaign.result import Result
-from gcs.campaign.tables import write_csv
+from gcs.campaign.tables import markdown_table
 from gcs.config.validate import Positive, strict
 from gcs.mission.model import Name
 
@@ -94,15 +93,11 @@ def _row(row: DetectionRow, group: Sequence[Result]) -> Detections:
     for result in group:
         if result.detected_s is not None:
             delays.setdefault(result.seed, []).append(result.detected_s)
-    right, ambiguous, wrong, none = (count[verdict] for verdict in ISOLATIONS)
     return Detections(
         fault=row.name,
         true_source="; ".join(dict.fromkeys(result.true_source for result in group)),
         flights=len(group),
-        right=right,
-        ambiguous=ambiguous,
-        wrong=wrong,
-        none=none,
+        **{verdict: count[verdict] for verdict in ISOLATIONS},
         named_wrongly="; ".join(dict.fromkeys(result.named_source for result in group if result.named_source)),
         first_alarms=_codes(group),
         median_s=statistics.median(map(statistics.median, delays.values())) if delays else None,
@@ -124,23 +119,23 @@ def seconds(time: float) -> str:
     return f"{time:.{2 if time < 0.995 else 1 if time < 9.95 else 0}f}"
 
 
-def write_detections(path: Path, rows: Sequence[Detections]) -> Path:
-    """Write a row for each. Raises :class:`gcs.errors.UnusableInput` where it cannot."""
-    cells = [{name: "" if value is None else value for name, value in asdict(row).items()} for row in rows]
-    return write_csv(path, [field.name for field in fields(Detections)], cells)
-
-
 def detections_markdown(rows: Sequence[Detections]) -> str:
     """Return the rows as a table in Markdown."""
-    lines = [
-        "| fault | true source | flights | right | ambiguous | wrong | none | first alarm | median | worst | latest "
-        "| named in its place |",
-        "|---|---|---|---|---|---|---|---|---|---|---|---|",
-    ]
-    for row in rows:
-        codes = ", ".join(f"`{code}`" for code in row.first_alarms.split(", ") if code)
-        delays = ["" if delay is None else f"{seconds(delay)} s" for delay in (row.median_s, row.worst_s, row.latest_s)]
-        counts = [str(n or "") for n in (row.right, row.ambiguous, row.wrong, row.none)]
-        cells = [row.fault, row.true_source, str(row.flights), *counts, codes, *delays, row.named_wrongly]
-        lines.append(f"| {' | '.join(cells)} |")
-    return "\n".join(lines) + "\n"
+    return markdown_table([
+        {
+            "fault": row.fault,
+            "true source": row.true_source,
+            "flights": str(row.flights),
+            **{verdict: str(getattr(row, verdict) or "") for verdict in ISOLATIONS},
+            "first alarm": ", ".join(f"`{code}`" for code in row.first_alarms.split(", ") if code),
+            "median": _delay(row.median_s),
+            "worst": _delay(row.worst_s),
+            "latest": _delay(row.latest_s),
+            "named in its place": row.named_wrongly,
+        }
+        for row in rows
+    ])  # fmt: skip
+
+
+def _delay(time: float | None) -> str:
+    return "" if time is None else f"{seconds(time)} s"

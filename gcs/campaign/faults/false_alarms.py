@@ -2,14 +2,13 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields
-from pathlib import Path
+from dataclasses import dataclass
 
 from scipy.stats import chi2
 
 from gcs.campaign.faults.cases import CLEAN
 from gcs.campaign.result import Result
-from gcs.campaign.tables import write_csv
+from gcs.campaign.tables import markdown_table
 
 CONFIDENCE = 0.95
 ALL = "all"
@@ -62,26 +61,19 @@ def upper_bound(events: int, exposure: float) -> float:
     return float(chi2.ppf(CONFIDENCE, 2 * (events + 1)) / 2.0 / exposure) if exposure > 0.0 else float("inf")
 
 
-def write_false_alarms(path: Path, rows: Sequence[FalseAlarms]) -> Path:
-    """Write a row for each mission. Raises :class:`gcs.errors.UnusableInput` where it cannot."""
-    cells = [
-        {name: f"{value:.4f}" if isinstance(value, float) else value for name, value in asdict(row).items()}
-        for row in rows
-    ]
-    return write_csv(path, [field.name for field in fields(FalseAlarms)], cells)
-
-
 def false_alarms_markdown(rows: Sequence[FalseAlarms]) -> str:
     """Return the rows as a table in Markdown."""
     bound = f"upper {CONFIDENCE:.0%} bound".replace("%", " %")
-    lines = [
-        f"| without a fault | flights | hours | false alarms | in flights | per hour | {bound} | codes |",
-        "|---|---|---|---|---|---|---|---|",
-    ]
-    for row in rows:
-        flights = str(row.flights) + (f" ({row.not_counted} without a record)" if row.not_counted else "")
-        lines.append(
-            f"| {row.mission} | {flights} | {row.hours:.3f} | {row.alarms} | {row.flights_with_alarms} "
-            f"| {row.per_hour:.1f} | {row.per_hour_bound:.1f} | {row.codes} |"
-        )
-    return "\n".join(lines) + "\n"
+    return markdown_table([
+        {
+            "without a fault": row.mission,
+            "flights": str(row.flights) + (f" ({row.not_counted} without a record)" if row.not_counted else ""),
+            "hours": f"{row.hours:.3f}",
+            "false alarms": str(row.alarms),
+            "in flights": str(row.flights_with_alarms),
+            "per hour": f"{row.per_hour:.1f}",
+            bound: f"{row.per_hour_bound:.1f}",
+            "codes": row.codes,
+        }
+        for row in rows
+    ])  # fmt: skip

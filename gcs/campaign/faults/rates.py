@@ -1,15 +1,12 @@
 """The rates of success of a campaign of faults, with their confidence intervals."""
 
-import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from scipy.stats import binomtest
 
 from gcs.campaign.faults.judgement import is_safe
 from gcs.campaign.result import Result
-from gcs.campaign.tables import write_csv
 
 CONFIDENCE = 0.95
 
@@ -59,15 +56,3 @@ def interval(successes: int, trials: int) -> tuple[float, float]:
     """Return Wilson's confidence interval of a rate, at :data:`CONFIDENCE`."""
     found = binomtest(successes, trials).proportion_ci(confidence_level=CONFIDENCE, method="wilson")
     return float(found.low), float(found.high)
-
-
-def write_rates(path: Path, rates: Sequence[Rates]) -> Path:
-    """Write a row for each fault and severity. Raises :class:`gcs.errors.UnusableInput` where it cannot."""
-    rows = [
-        {
-            name: f"{value:.4f}" if isinstance(value, float) else value
-            for name, value in dataclasses.asdict(rate).items()
-        }
-        for rate in rates
-    ]
-    return write_csv(path, [field.name for field in dataclasses.fields(Rates)], rows)

@@ -10,12 +10,12 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from gcs.campaign.faults.detection_table import Detections, write_detections
-from gcs.campaign.faults.false_alarms import false_alarms, write_false_alarms
+from gcs.campaign.faults.detection_table import Detections
+from gcs.campaign.faults.false_alarms import FalseAlarms, false_alarms
 from gcs.campaign.faults.judgement import COLUMNS
-from gcs.campaign.faults.rates import CONFIDENCE, Rates, rates_of, write_rates
+from gcs.campaign.faults.rates import CONFIDENCE, Rates, rates_of
 from gcs.campaign.result import Result
-from gcs.campaign.tables import extreme, text_table, write_results
+from gcs.campaign.tables import extreme, text_table, write_records, write_results
 from gcs.record.figures import save_picture
 from gcs.record.outcome import Outcome
 
@@ -37,13 +37,13 @@ def report(
     rates, clear = rates_of(results), false_alarms(results)
     files = [
         *write_results(out, COLUMNS, results),
-        write_rates(out / "rates.csv", rates),
+        write_records(out / "rates.csv", Rates, rates, ".4f"),
         draw_matrix(name, results, out),
     ]
     if rows:
-        files.append(write_detections(out / "detection.csv", rows))
+        files.append(write_records(out / "detection.csv", Detections, rows))
     if any(result.clean_s is not None for result in results):
-        files.append(write_false_alarms(out / "false_alarms.csv", clear))
+        files.append(write_records(out / "false_alarms.csv", FalseAlarms, clear, ".4f"))
     parts: list[RenderableType] = [_rates_table(rates, results)]
     parts.append(Text(f"Rates with their {100 * CONFIDENCE:.0f} % intervals (Wilson); safe: set down without contact."))
     if false := sum(result.false_alarms or 0 for result in results):

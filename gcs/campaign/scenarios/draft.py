@@ -98,15 +98,15 @@ class Draft:
         for step, angle in legs:
             north, east = north + step * math.cos(angle), east + step * math.sin(angle)
             points.append((round(north, 3), round(east, 3), -round(altitude, 3)))
-        speed = self._uniform(1.0, 1.5)
-        self.reference = {"points": points, "speed": speed, "return_home": False}
-        self._lay(route_through(points, speed, self._system, return_home=False))
+        self._lay_route(points, self._uniform(1.0, 1.5))
 
     def lay_straight(self, speed: float) -> None:
         """Lay a straight path of 30 m at a ``speed`` (m/s)."""
         heading, altitude = self.random.uniform(-math.pi, math.pi), self._uniform(4.0, 6.0)
         goal = _rounded(np.array([30.0 * math.cos(heading), 30.0 * math.sin(heading), -altitude]))
-        points = [(0.0, 0.0, -altitude), goal]
+        self._lay_route([(0.0, 0.0, -altitude), goal], speed)
+
+    def _lay_route(self, points: list[tuple[float, float, float]], speed: float) -> None:
         self.reference = {"points": points, "speed": speed, "return_home": False}
         self._lay(route_through(points, speed, self._system, return_home=False))
 
@@ -184,20 +184,15 @@ class Draft:
         where, direction, time = self._place(along, 0.0)
         shape, up = Sphere(self._uniform(0.3, 0.6)), random.uniform(-0.2, 3.0)
         motion = motion_for(MOTIONS[random.integers(len(MOTIONS))], random, time, direction, self._fastest)
-        [then] = displacement(motion, np.array([time]))
         known = bool(random.random() < MOVING_ON_THE_MAP)
-        self._moving.append((along, where))
-        rest = _rounded(where - [0.0, 0.0, up] - then)
-        self.obstacles.append(Obstacle(self._name("moving sphere"), rest, shape, known, motion))
+        self._add_meeting(self._name("moving sphere"), along, where, up, time, shape, motion, known)
 
     def add_approaching(self, along: float, speed: float) -> None:
         """Add a sphere that meets the undisturbed payload at ``speed`` (m/s) from any bearing, not on the map."""
         where, _, time = self._place(along, 0.0)
         bearing, up = self.random.uniform(-math.pi, math.pi), self.random.uniform(-0.2, 3.0)
         motion = LinearMotion(_rounded(speed * np.array([math.cos(bearing), math.sin(bearing), 0.0])))
-        [then] = displacement(motion, np.array([time]))
-        self._moving.append((along, where))
-        self.obstacles.append(Obstacle("ball", _rounded(where - [0.0, 0.0, up] - then), Sphere(0.5), False, motion))
+        self._add_meeting("ball", along, where, up, time, Sphere(0.5), motion)
 
     def add_stop_and_go(self, along: float) -> None:
         """Add a sphere that stops and goes about where the undisturbed payload passes, not on the map."""
@@ -205,10 +200,16 @@ class Draft:
         where, direction, time = self._place(along, random.uniform(-0.5, 0.5))
         shape, up = Sphere(self._uniform(0.3, 0.6)), random.uniform(-0.2, 3.0)
         motion = stop_and_go(random, time, direction)
+        self._add_meeting(self._name("moving sphere"), along, where, up, time, shape, motion)
+
+    def _add_meeting(
+        self, name: str, along: float, where: Array, up: float, time: float, shape: Shape, motion: AnyMotion,
+        known: bool = False,
+    ) -> None:  # fmt: skip
+        """Add an obstacle that is ``up`` m above the place ``where`` (3,) on the path at ``time`` (s)."""
         [then] = displacement(motion, np.array([time]))
         self._moving.append((along, where))
-        rest = _rounded(where - [0.0, 0.0, up] - then)
-        self.obstacles.append(Obstacle(self._name("moving sphere"), rest, shape, False, motion))
+        self.obstacles.append(Obstacle(name, _rounded(where - [0.0, 0.0, up] - then), shape, known, motion))
 
     def _add_static(self, along: float, shape: Shape, position: tuple[float, float, float]) -> None:
         known = bool(self.random.random() < ON_THE_MAP)
@@ -227,9 +228,8 @@ class Draft:
         formation = BoundingCylinder.of(self._system.parameters(), LINK_TILT)
         static = [(o.shape, np.array(o.position)) for o in self.obstacles if o.motion is None]
         moving = [(o, o.motion) for o in self.obstacles if o.motion is not None]
-        heights = np.arange(
-            self.schedule.goal[2], -self._system.resting_altitude, 0.5
-        )  # from the path down to the ground
+        # From the path down to the ground.
+        heights = np.arange(self.schedule.goal[2], -self._system.resting_altitude, 0.5)
         ends = [[x, y, z] for x, y, _ in (self._path[0], self.schedule.goal) for z in heights]
         waypoints = self.reference["points"] if isinstance(self.reference, dict) else []
         return (

@@ -30,7 +30,8 @@ def forest(random: Random, passages: Passages) -> Layout:
     density, in_clearing = random.uniform(*DENSITIES), random.random() < IN_CLEARING
     depth, width = (random.uniform(*(ROUND_CLEARING if in_clearing else edges)) for edges in (DEPTHS, WIDTHS))
     length = near + (0.5 * depth if in_clearing else depth + near)
-    layout = Layout([leg(above_pad(random.uniform(4.0, 6.0)), length, heading)], _speed(random), None)
+    way = [leg(above_pad(random.uniform(4.0, 6.0)), length, heading)]
+    layout = Layout(way, round(random.uniform(1.5, 2.5), 3), None)
     trees, area = np.empty((0, 2)), depth * width - in_clearing * math.pi * near**2
     free = (length - near, 0.0) if in_clearing else (math.inf, 0.0)
     for _ in range(20000):
@@ -43,10 +44,6 @@ def forest(random: Random, passages: Passages) -> Layout:
     for x, y in trees.tolist():
         _add_tree(layout, random, layout.at(near + x, y)[0])
     return layout
-
-
-def _speed(random: Random) -> float:
-    return round(random.uniform(1.5, 2.5), 3)
 
 
 def _add_tree(layout: Layout, random: Random, place: tuple[float, float]) -> None:

@@ -1,7 +1,7 @@
 """Plans of random obstacle scenarios (``gcs courses``)."""
 
 import hashlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -15,27 +15,24 @@ from gcs.campaign.grid import Grid, variants
 from gcs.campaign.result import Result
 from gcs.campaign.scenarios.generator import DEFAULT_KINDS, HELD_TO, generate
 from gcs.campaign.scenarios.judgement import COLUMNS, judge, least_separation
+from gcs.campaign.scenarios.passage import Passage
 from gcs.campaign.scenarios.planning import fly_planning
 from gcs.config import read_system
 
 
-@dataclass(frozen=True)
-class Scenarios(PlanGenerator):
-    """``count`` random scenarios of ``seed``, of ``kinds`` in turn; obstacles move at up to ``fastest`` (m/s).
+@dataclass(frozen=True, kw_only=True)
+class CourseFlights(PlanGenerator):
+    """Flights through obstacle scenarios, whose noise or whose drawing is of ``seed``.
 
     ``planning``: on the planning level. ``grid``: of settings, with each of which every scenario is flown.
     """
 
-    count: int
     seed: int
-    kinds: tuple[str, ...] = DEFAULT_KINDS
     controller: str = "idc"
     config: Path | None = None
-    fastest: float = 2.0
     planning: bool = False
     grid: Grid = field(default_factory=dict)
 
-    what = "scenarios"
     passed_means = "passed"
     columns = COLUMNS
     shown = (
@@ -46,34 +43,56 @@ class Scenarios(PlanGenerator):
     )
 
     @property
-    def settings(self) -> dict[str, Any]:
-        """All but the number of scenarios."""
-        return {
-            "seed": self.seed,
-            "kinds": list(self.kinds),
-            "controller": self.controller,
-            "config": None if self.config is None else hashlib.sha256(self.config.read_bytes()).hexdigest()[:16],
-            "obstacle_speed": self.fastest,
-        }
+    def config_digest(self) -> str | None:
+        """Digest of the system file; None: the default system."""
+        return None if self.config is None else hashlib.sha256(self.config.read_bytes()).hexdigest()[:16]
 
-    def plans(self, out: Path) -> Iterator[FlightPlan]:
-        """Yield a flight for each scenario."""
-        system = read_system(self.config)
+    def flights_through(
+        self, number: int, name: str, kind: str, mission: Path, passage: Passage | None, files: Mapping[Path, str]
+    ) -> Iterator[FlightPlan]:
+        """Yield the flights of a scenario with each combination of settings."""
+        judgement = partial(judge, HELD_TO, passage)
+        fly = partial(fly_planning, HELD_TO, passage) if self.planning else None
         config = self.config and self.config.absolute()
-        for number in range(1, self.count + 1):
-            kind = self.kinds[(number - 1) % len(self.kinds)]
-            scenario = generate(self.seed, number, kind, system, self.fastest)
-            mission = out / "missions" / f"{scenario.name}.toml"
-            judgement = partial(judge, HELD_TO, scenario.passage)
-            fly = partial(fly_planning, HELD_TO, scenario.passage) if self.planning else None
-            plan = FlightPlan(
-                number, scenario.name, mission, judgement, self.controller, config,
-                labels={"kind": kind}, files={mission: scenario.text}, fly=fly,
-            )  # fmt: skip
-            yield from variants(plan, self.grid)
+        plan = FlightPlan(
+            number, name, mission, judgement, self.controller, config, labels={"kind": kind}, files=files, fly=fly
+        )
+        return variants(plan, self.grid)
 
     def report(self, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
         """Write ``results.csv``, ``timing.csv`` and the distribution."""
         from gcs.campaign.scenarios.report import report  # matplotlib takes long to import
 
         return report(results, out, least_separation(read_system(self.config)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scenarios(CourseFlights):
+    """``count`` random scenarios of ``seed``, of ``kinds`` in turn; obstacles move at up to ``fastest`` (m/s)."""
+
+    count: int
+    kinds: tuple[str, ...] = DEFAULT_KINDS
+    fastest: float = 2.0
+
+    what = "scenarios"
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """All but the number of scenarios."""
+        return {
+            "seed": self.seed,
+            "kinds": list(self.kinds),
+            "controller": self.controller,
+            "config": self.config_digest,
+            "obstacle_speed": self.fastest,
+        }
+
+    def plans(self, out: Path) -> Iterator[FlightPlan]:
+        """Yield a flight for each scenario."""
+        system = read_system(self.config)
+        for number in range(1, self.count + 1):
+            kind = self.kinds[(number - 1) % len(self.kinds)]
+            scenario = generate(self.seed, number, kind, system, self.fastest)
+            mission = out / "missions" / f"{scenario.name}.toml"
+            files = {mission: scenario.text}
+            yield from self.flights_through(number, scenario.name, kind, mission, scenario.passage, files)

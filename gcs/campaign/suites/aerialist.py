@@ -93,11 +93,9 @@ def read_aerialist(path: Path, config: Path | None, speed: float, seed: int) -> 
             problems.append(file.problem(keys.obstacle(i), str(error)))
     if problems:
         raise UnusableFile(problems)
-    passage, problems = checked_passage(
+    passage = checked_passage(
         mission, obstacles, lambda i, reason: file.problem(keys.plan if i is None else keys.obstacle(i), reason)
     )
-    if problems:
-        raise UnusableFile(problems)
     comments = [f"Test {path.name} of Aerialist, its mission {plan.name}."]
     if passage is not None:
         comments.append(f"For the formation {passage}.")

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from gcs.campaign.scenarios.passage import Passage, passage_of
+from gcs.config import UnusableFile
 from gcs.mission.model import Mission, Obstacle
 from gcs.planning.schedule import Schedule
 from idc_controller.geometry.bounding_cylinder import BoundingCylinder
@@ -30,12 +31,12 @@ class Course:
 
 def checked_passage(
     mission: Mission, obstacles: Sequence[Obstacle], problem: Callable[[int | None, str], str]
-) -> tuple[Passage | None, list[str]]:
-    """Return the passage of a mission past ``obstacles`` that are added to it, and why it cannot be flown.
+) -> Passage | None:
+    """Return the passage of a mission past ``obstacles`` that are added to it.
 
-    ``problem`` makes the line for the index of an obstacle (None: the mission) and a reason.
+    Raises :class:`UnusableFile` where it cannot be flown, with lines that ``problem`` makes of the index of an obstacle
+    (None: the mission) and a reason.
     """
-    whole = replace(mission, obstacles=(*obstacles, *mission.obstacles))
     formation = BoundingCylinder.of(mission.system.parameters())
     pad = np.array([[0.0, 0.0, -mission.system.resting_altitude]])
     problems = []
@@ -48,4 +49,6 @@ def checked_passage(
         Schedule(mission)
     except ValueError as error:
         problems.append(problem(None, str(error)))
-    return (None if problems else passage_of(whole)), problems
+    if problems:
+        raise UnusableFile(problems)
+    return passage_of(replace(mission, obstacles=(*obstacles, *mission.obstacles)))

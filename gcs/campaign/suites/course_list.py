@@ -119,13 +119,11 @@ def _course(path: Path, number: int, line: _Line, system: SystemConfig, speed: f
     own_speed = min(line.speed or speed, system.motion.speed_max)
     name = line.name or f"{path.stem}-{number}"
     route = route_through(line.points, own_speed, system, return_home=line.return_home)
-    passage, problems = checked_passage(
+    passage = checked_passage(
         Mission(name, path, seed, system, route),
         obstacles,
         lambda i, reason: _problem(path, number, ("points",) if i is None else keys[i], reason),
     )
-    if problems:
-        raise UnusableFile(problems)
     reference = {"points": line.points, "speed": own_speed, "return_home": line.return_home}
     comments = [f"Line {number} of {path.name}."]
     if passage is not None:
