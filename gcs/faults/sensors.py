@@ -8,8 +8,7 @@ _Vector = tuple[float, float, float]
 _POSITION = "gps gnss position pos local_position global_position mocap vio baro barometer altitude"
 _JAMMED = "jamming jammed blackout"
 _Onboard = Annotated[
-    bool,
-    parameter("true: lost on board, too, where the other sensors are used; false: only in the telemetry"),
+    bool, parameter("true: lost on board, too, where the other sensors are used; false: only in the telemetry")
 ]
 
 
@@ -76,6 +75,5 @@ class ObstacleSensingLost(FaultSettings):
     """The vehicles no longer detect obstacles."""
 
     reported: Annotated[
-        bool,
-        parameter("true: the vehicles report that their sensors have failed; false: those fall silent"),
+        bool, parameter("true: the vehicles report that their sensors have failed; false: those fall silent")
     ] = True

@@ -13,7 +13,7 @@ from gcs.faults.kind import FaultSettings, Problem, Vehicles, kind, names, param
 Channel = Literal[
     "position", "velocity", "attitude", "rates",
     "payload_position", "payload_velocity", "payload_attitude", "payload_rates",
-    "obstacles",
+    "obstacles"
 ]  # fmt: skip
 Axes = tuple[Literal["x", "y", "z"], ...]
 _Amount = 1e5

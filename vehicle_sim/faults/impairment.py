@@ -61,6 +61,21 @@ class LinkImpairment(ABC):
         heapq.heappush(self._delayed, (due, self._serial, datagram))
 
 
+class DatagramChange(LinkImpairment):
+    """An impairment that changes or loses datagrams, each by itself, and delays none."""
+
+    @abstractmethod
+    def _changed(self, data: bytes, moment: Moment) -> bytes | None:
+        """Return the bytes that go on in place of ``data``, the same object if undisturbed; None: lost."""
+
+    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
+        data, address = datagram
+        changed = self._changed(data, moment)
+        if changed is not None:
+            out.append((changed, address))
+        return changed is not data
+
+
 class OrderedImpairment(LinkImpairment):
     """An impairment that keeps the order of datagrams, also once the fault is over."""
 

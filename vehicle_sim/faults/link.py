@@ -3,34 +3,28 @@
 from gcs.faults import link as kinds
 from vehicle_sim.faults.disturbances import Datagram
 from vehicle_sim.faults.frames import frames
-from vehicle_sim.faults.impairment import GilbertElliottProcess, LinkImpairment, OrderedImpairment
+from vehicle_sim.faults.impairment import DatagramChange, GilbertElliottProcess, LinkImpairment, OrderedImpairment
 from vehicle_sim.faults.schedule import TOLERANCE, Moment
 
 
-class PacketLoss(LinkImpairment):
+class PacketLoss(DatagramChange):
     """Loss of each datagram with a probability."""
 
-    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        if self.random() < self.fault.settings.probability:
-            return True
-        out.append(datagram)
-        return False
+    def _changed(self, data: bytes, moment: Moment) -> bytes | None:
+        return None if self.random() < self.fault.settings.probability else data
 
 
-class BurstLoss(LinkImpairment):
+class BurstLoss(DatagramChange):
     """Gilbert-Elliott loss, its states in continuous time: the traffic does not change their lengths."""
 
     _state: GilbertElliottProcess | None = None
 
-    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
+    def _changed(self, data: bytes, moment: Moment) -> bytes | None:
         settings: kinds.BurstLoss = self.fault.settings
         if self._state is None:
             self._state = GilbertElliottProcess(self.generator.spawn(1)[0], settings.gap, settings.burst)
         loss = settings.loss_in_burst if self._state.is_bad(moment) else settings.loss_in_gap
-        if self.random() < loss:
-            return True
-        out.append(datagram)
-        return False
+        return None if self.random() < loss else data
 
 
 class Latency(OrderedImpairment):
@@ -71,45 +65,38 @@ class Duplication(LinkImpairment):
         return True
 
 
-class Corruption(LinkImpairment):
+class Corruption(DatagramChange):
     """Replacement of bytes."""
 
-    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
+    def _changed(self, data: bytes, moment: Moment) -> bytes | None:
         settings: kinds.Corruption = self.fault.settings
-        if self.random() >= settings.probability or not datagram[0]:
-            out.append(datagram)
-            return False
-        data = bytearray(datagram[0])
-        count = min(settings.bytes, len(data))
-        for at in self.generator.choice(len(data), count, replace=False):
-            data[at] ^= int(self.generator.integers(1, 256))  # never what it was
-        out.append((bytes(data), datagram[1]))
-        return True
+        if self.random() >= settings.probability or not data:
+            return data
+        changed = bytearray(data)
+        for at in self.generator.choice(len(data), min(settings.bytes, len(data)), replace=False):
+            changed[at] ^= int(self.generator.integers(1, 256))  # never what it was
+        return bytes(changed)
 
 
-class BadChecksum(LinkImpairment):
+class BadChecksum(DatagramChange):
     """Wrong checksums."""
 
-    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
+    def _changed(self, data: bytes, moment: Moment) -> bytes | None:
         if self.random() >= self.fault.settings.probability:
-            out.append(datagram)
-            return False
-        data = bytearray(datagram[0])
-        for frame in frames(datagram[0]):
-            data[frame.checksum] ^= int(self.generator.integers(1, 256))
-        out.append((bytes(data), datagram[1]))
-        return True
+            return data
+        changed = bytearray(data)
+        for frame in frames(data):
+            changed[frame.checksum] ^= int(self.generator.integers(1, 256))
+        return bytes(changed)
 
 
-class Truncation(LinkImpairment):
+class Truncation(DatagramChange):
     """Datagrams cut off."""
 
-    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        if self.random() >= self.fault.settings.probability or len(datagram[0]) < 2:
-            out.append(datagram)
-            return False
-        out.append((datagram[0][: int(self.generator.integers(1, len(datagram[0])))], datagram[1]))
-        return True
+    def _changed(self, data: bytes, moment: Moment) -> bytes | None:
+        if self.random() >= self.fault.settings.probability or len(data) < 2:
+            return data
+        return data[: int(self.generator.integers(1, len(data)))]
 
 
 class BandwidthCap(OrderedImpairment):
@@ -127,11 +114,11 @@ class BandwidthCap(OrderedImpairment):
         return begin > now
 
 
-class Partition(LinkImpairment):
+class Partition(DatagramChange):
     """Loss of every datagram."""
 
-    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        return True
+    def _changed(self, data: bytes, moment: Moment) -> bytes | None:
+        return None
 
 
 class Stall(OrderedImpairment):
@@ -142,15 +129,13 @@ class Stall(OrderedImpairment):
         return True
 
 
-class Flapping(LinkImpairment):
+class Flapping(DatagramChange):
     """Loss of every datagram while the link is down."""
 
-    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
+    def _changed(self, data: bytes, moment: Moment) -> bytes | None:
         settings: kinds.Flapping = self.fault.settings
-        if (moment.elapsed + TOLERANCE) % (settings.down + settings.up) < settings.down:
-            return True
-        out.append(datagram)
-        return False
+        is_down = (moment.elapsed + TOLERANCE) % (settings.down + settings.up) < settings.down
+        return None if is_down else data
 
 
 LINK_IMPAIRMENTS: dict[type, type[LinkImpairment]] = {

@@ -5,9 +5,8 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.faults import timing as kinds
 from vehicle_sim.faults.active import ActiveFault
-from vehicle_sim.faults.disturbances import Datagram
 from vehicle_sim.faults.frames import Frame, frames
-from vehicle_sim.faults.impairment import LinkImpairment
+from vehicle_sim.faults.impairment import DatagramChange, LinkImpairment
 from vehicle_sim.faults.samples import PAYLOAD, REPORTED, SCAN, SampleImpairment
 from vehicle_sim.faults.schedule import Moment
 from vehicle_sim.world.range_sensor import RangeSample
@@ -33,23 +32,19 @@ _STREAMED = frozenset(
 _OVERFLOW = 2**32 * 1e-3  # s
 
 
-class MessageFilter(LinkImpairment):
+class MessageFilter(DatagramChange):
     """Loss of some messages of a datagram."""
 
     def keeps(self, frame: Frame) -> bool:
         """Return whether a message goes on."""
         raise NotImplementedError
 
-    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        data = datagram[0]
+    def _changed(self, data: bytes, moment: Moment) -> bytes | None:
         found = list(frames(data))
         kept = [frame for frame in found if self.keeps(frame)]
         if len(kept) == len(found):
-            out.append(datagram)
-            return False
-        if kept:
-            out.append((b"".join(data[frame.start : frame.end] for frame in kept), datagram[1]))
-        return True
+            return data
+        return b"".join(data[frame.start : frame.end] for frame in kept) or None
 
 
 class LowRate(MessageFilter):
@@ -107,12 +102,7 @@ class StaleStamps(SampleImpairment):
 
     def reported(self, vehicle: int, report: ReportedState, moment: Moment) -> ReportedState:
         """Return the report with earlier stamps."""
-        attitude, position = report
-        old_attitude = None if attitude is None else self._aged(attitude)
-        return ReportedState(
-            old_attitude,
-            old_attitude if position is attitude else None if position is None else self._aged(position),
-        )
+        return ReportedState(*(None if part is None else self._aged(part) for part in report))
 
     def payload(self, vehicle: int, sample: Measurement, moment: Moment) -> Measurement:
         """Return the sample with an earlier stamp."""

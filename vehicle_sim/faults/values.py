@@ -118,13 +118,10 @@ class ValueImpairment(SampleImpairment):
 
     def reported(self, vehicle: int, report: ReportedState, moment: Moment) -> ReportedState:
         """Return the report, disturbed in the message that carries the channel."""
-        if self._channel in ("position", "velocity"):
-            before = report.position
-            after = None if before is None else self._changed(before, moment)
-            return report if after is before else report._replace(position=after)
-        before = report.attitude
+        part = "position" if self._channel in ("position", "velocity") else "attitude"
+        before = getattr(report, part)
         after = None if before is None else self._changed(before, moment)
-        return report if after is before else report._replace(attitude=after)
+        return report if after is before else report._replace(**{part: after})
 
     def payload(self, vehicle: int, sample: Measurement, moment: Moment) -> Measurement:
         """Return the disturbed sample; the same for all relays of it, if the fault is in the unit."""
