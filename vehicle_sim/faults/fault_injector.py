@@ -6,7 +6,7 @@ from typing import TypeVar
 
 from gcs.config import SystemConfig
 from gcs.mission.model import Fault
-from vehicle_sim.faults import link, sensors, timing, values
+from vehicle_sim.faults import link, sensors, timing, values  # noqa: F401 -- each has impairments of its kinds
 from vehicle_sim.faults.active import ActiveFault
 from vehicle_sim.faults.disturbances import Datagram, Disturbances, Forces
 from vehicle_sim.faults.impairment import LinkImpairment
@@ -17,8 +17,6 @@ from vehicle_sim.world.sensors import Measurement, ReportedState
 from vehicle_sim.world.world import World
 
 _TO_VEHICLE, _FROM_VEHICLE = 1, 2
-_LINK_IMPAIRMENTS = link.LINK_IMPAIRMENTS | timing.LINK_IMPAIRMENTS
-_SAMPLE_IMPAIRMENTS = sensors.SAMPLE_IMPAIRMENTS | timing.SAMPLE_IMPAIRMENTS | values.SAMPLE_IMPAIRMENTS
 _Sample = TypeVar("_Sample")
 
 
@@ -44,10 +42,10 @@ class FaultInjector(Disturbances):
             if kind in timing.CLOCKS:
                 for vehicle in fault.vehicles:
                     self._clocks.setdefault(vehicle, []).append(fault)
-            elif kind in _LINK_IMPAIRMENTS:
-                self._impair_link(fault, _LINK_IMPAIRMENTS[kind])
-            elif kind in _SAMPLE_IMPAIRMENTS:
-                for vehicle, impairment in _SAMPLE_IMPAIRMENTS[kind].of_vehicles(fault, system).items():
+            elif kind in LinkImpairment.of_kind:
+                self._impair_link(fault, LinkImpairment.of_kind[kind])
+            elif found := [cls for of, cls in SampleImpairment.of_kind.items() if issubclass(kind, of)]:
+                for vehicle, impairment in found[0].of_vehicles(fault, system).items():
                     for hook in impairment.acts_on:
                         self._samples.setdefault((hook, vehicle), []).append(impairment)
         world = [fault for fault in self.faults if fault.kind.family == "world"]

@@ -16,8 +16,15 @@ from vehicle_sim.faults.schedule import TOLERANCE, Moment
 class LinkImpairment(ABC):
     """What one kind of fault does to datagrams while it is active; else they pass unchanged."""
 
+    of_kind: ClassVar[dict[type, type["LinkImpairment"]]] = {}
+    """The impairment of each kind of fault, by the kind's parameters."""
     direction: ClassVar[Direction | None] = None
     """Direction of a kind that is bound to one; None: the mission's."""
+
+    def __init_subclass__(cls, of: type | None = None) -> None:
+        """``of``: parameters of the kind of fault."""
+        if of is not None:
+            LinkImpairment.of_kind[of] = cls
 
     def __init__(self, fault: ActiveFault, generator: np.random.Generator) -> None:
         self.fault = fault

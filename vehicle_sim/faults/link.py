@@ -7,14 +7,14 @@ from vehicle_sim.faults.impairment import DatagramChange, GilbertElliottProcess,
 from vehicle_sim.faults.schedule import TOLERANCE, Moment
 
 
-class PacketLoss(DatagramChange):
+class PacketLoss(DatagramChange, of=kinds.PacketLoss):
     """Loss of each datagram with a probability."""
 
     def _changed(self, data: bytes, moment: Moment) -> bytes | None:
         return None if self.random() < self.fault.settings.probability else data
 
 
-class BurstLoss(DatagramChange):
+class BurstLoss(DatagramChange, of=kinds.BurstLoss):
     """Gilbert-Elliott loss, its states in continuous time: the traffic does not change their lengths."""
 
     _state: GilbertElliottProcess | None = None
@@ -27,7 +27,7 @@ class BurstLoss(DatagramChange):
         return None if self.random() < loss else data
 
 
-class Latency(OrderedImpairment):
+class Latency(OrderedImpairment, of=kinds.Latency):
     """Delay of all datagrams."""
 
     def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
@@ -35,7 +35,7 @@ class Latency(OrderedImpairment):
         return True
 
 
-class Jitter(OrderedImpairment):
+class Jitter(OrderedImpairment, of=kinds.Jitter):
     """Random delays, the order kept."""
 
     def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
@@ -43,7 +43,7 @@ class Jitter(OrderedImpairment):
         return True
 
 
-class Reordering(LinkImpairment):
+class Reordering(LinkImpairment, of=kinds.Reordering):
     """Delay of some datagrams, which later ones overtake."""
 
     def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
@@ -54,7 +54,7 @@ class Reordering(LinkImpairment):
         return False
 
 
-class Duplication(LinkImpairment):
+class Duplication(LinkImpairment, of=kinds.Duplication):
     """Some datagrams twice."""
 
     def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
@@ -65,7 +65,7 @@ class Duplication(LinkImpairment):
         return True
 
 
-class Corruption(DatagramChange):
+class Corruption(DatagramChange, of=kinds.Corruption):
     """Replacement of bytes."""
 
     def _changed(self, data: bytes, moment: Moment) -> bytes | None:
@@ -78,7 +78,7 @@ class Corruption(DatagramChange):
         return bytes(changed)
 
 
-class BadChecksum(DatagramChange):
+class BadChecksum(DatagramChange, of=kinds.BadChecksum):
     """Wrong checksums."""
 
     def _changed(self, data: bytes, moment: Moment) -> bytes | None:
@@ -90,7 +90,7 @@ class BadChecksum(DatagramChange):
         return bytes(changed)
 
 
-class Truncation(DatagramChange):
+class Truncation(DatagramChange, of=kinds.Truncation):
     """Datagrams cut off."""
 
     def _changed(self, data: bytes, moment: Moment) -> bytes | None:
@@ -99,7 +99,7 @@ class Truncation(DatagramChange):
         return data[: int(self.generator.integers(1, len(data)))]
 
 
-class BandwidthCap(OrderedImpairment):
+class BandwidthCap(OrderedImpairment, of=kinds.BandwidthCap):
     """Queue in front of a slow line."""
 
     _free_at = 0.0
@@ -114,14 +114,14 @@ class BandwidthCap(OrderedImpairment):
         return begin > now
 
 
-class Partition(DatagramChange):
+class Partition(DatagramChange, of=kinds.Partition):
     """Loss of every datagram."""
 
     def _changed(self, data: bytes, moment: Moment) -> bytes | None:
         return None
 
 
-class Stall(OrderedImpairment):
+class Stall(OrderedImpairment, of=kinds.Stall):
     """Delay of all datagrams until the fault ends."""
 
     def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
@@ -129,27 +129,10 @@ class Stall(OrderedImpairment):
         return True
 
 
-class Flapping(DatagramChange):
+class Flapping(DatagramChange, of=kinds.Flapping):
     """Loss of every datagram while the link is down."""
 
     def _changed(self, data: bytes, moment: Moment) -> bytes | None:
         settings: kinds.Flapping = self.fault.settings
         is_down = (moment.elapsed + TOLERANCE) % (settings.down + settings.up) < settings.down
         return None if is_down else data
-
-
-LINK_IMPAIRMENTS: dict[type, type[LinkImpairment]] = {
-    kinds.PacketLoss: PacketLoss,
-    kinds.BurstLoss: BurstLoss,
-    kinds.Latency: Latency,
-    kinds.Jitter: Jitter,
-    kinds.Reordering: Reordering,
-    kinds.Duplication: Duplication,
-    kinds.Corruption: Corruption,
-    kinds.BadChecksum: BadChecksum,
-    kinds.Truncation: Truncation,
-    kinds.BandwidthCap: BandwidthCap,
-    kinds.Partition: Partition,
-    kinds.Stall: Stall,
-    kinds.Flapping: Flapping,
-}

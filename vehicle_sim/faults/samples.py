@@ -1,7 +1,7 @@
 """One fault on the samples of one vehicle: what it measures, reports, relays and detects."""
 
 from collections.abc import Mapping
-from typing import Self
+from typing import ClassVar, Self
 
 from gcs.config import SystemConfig
 from vehicle_sim.faults.active import ActiveFault
@@ -15,7 +15,14 @@ OWN, REPORTED, PAYLOAD, SCAN = "own", "reported", "payload", "scan"
 class SampleImpairment:
     """No change: every method returns its sample. ``acts_on`` names the methods that a kind of fault overrides."""
 
+    of_kind: ClassVar[dict[type, type["SampleImpairment"]]] = {}
+    """The impairment of each kind of fault, by the kind's parameters or their base class."""
     acts_on: frozenset[str] = frozenset()
+
+    def __init_subclass__(cls, of: type | None = None) -> None:
+        """``of``: parameters of the kind of fault, or their base class."""
+        if of is not None:
+            SampleImpairment.of_kind[of] = cls
 
     def __init__(self, fault: ActiveFault, vehicle: int, system: SystemConfig) -> None:
         self.fault = fault

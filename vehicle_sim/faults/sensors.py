@@ -27,7 +27,7 @@ class _Lost(SampleImpairment):
         return self._last
 
 
-class PositionLost(_Lost):
+class PositionLost(_Lost, of=kinds.PositionLost):
     """Loss of position and velocity."""
 
     def own(self, vehicle: int, sample: Measurement, moment: Moment) -> Measurement:
@@ -40,7 +40,7 @@ class PositionLost(_Lost):
         return report._replace(position=None)
 
 
-class AttitudeLost(_Lost):
+class AttitudeLost(_Lost, of=kinds.AttitudeLost):
     """Loss of the attitude."""
 
     def own(self, vehicle: int, sample: Measurement, moment: Moment) -> Measurement:
@@ -52,7 +52,7 @@ class AttitudeLost(_Lost):
         return report._replace(attitude=None)
 
 
-class RatesLost(_Lost):
+class RatesLost(_Lost, of=kinds.RatesLost):
     """Loss of the body rates."""
 
     def own(self, vehicle: int, sample: Measurement, moment: Moment) -> Measurement:
@@ -65,7 +65,7 @@ class RatesLost(_Lost):
         return report if attitude is None else report._replace(attitude=attitude._replace(rates=(math.nan,) * 3))
 
 
-class PositionGlitch(SampleImpairment):
+class PositionGlitch(SampleImpairment, of=kinds.PositionGlitch):
     """Position that jumps away and back."""
 
     acts_on = frozenset({OWN})
@@ -97,7 +97,7 @@ class PositionGlitch(SampleImpairment):
         self._offset = settings.size * math.cos(heading), settings.size * math.sin(heading)
 
 
-class PositionDrift(SampleImpairment):
+class PositionDrift(SampleImpairment, of=kinds.PositionDrift):
     """Position that drifts away."""
 
     acts_on = frozenset({OWN})
@@ -110,7 +110,7 @@ class PositionDrift(SampleImpairment):
         return sample._replace(position=(x + a * t, y + b * t, z + c * t))
 
 
-class PayloadUnitLost(SampleImpairment):
+class PayloadUnitLost(SampleImpairment, of=kinds.PayloadUnitLost):
     """Loss of the payload's navigation unit."""
 
     acts_on = frozenset({PAYLOAD})
@@ -119,7 +119,7 @@ class PayloadUnitLost(SampleImpairment):
         """Return nothing to relay."""
 
 
-class ObstacleSensingLost(SampleImpairment):
+class ObstacleSensingLost(SampleImpairment, of=kinds.ObstacleSensingLost):
     """Loss of the range sensor."""
 
     acts_on = frozenset({SCAN})
@@ -127,14 +127,3 @@ class ObstacleSensingLost(SampleImpairment):
     def scan(self, vehicle: int, sample: RangeSample, moment: Moment) -> RangeSample:
         """Return a scan of a failed sensor, of which nothing is sent: without any, the last one would stay in force."""
         return sample._replace(points=sample.points[:0], works=not self.fault.settings.reported, is_sent=False)
-
-
-SAMPLE_IMPAIRMENTS: dict[type, type[SampleImpairment]] = {
-    kinds.PositionLost: PositionLost,
-    kinds.AttitudeLost: AttitudeLost,
-    kinds.RatesLost: RatesLost,
-    kinds.PositionGlitch: PositionGlitch,
-    kinds.PositionDrift: PositionDrift,
-    kinds.PayloadUnitLost: PayloadUnitLost,
-    kinds.ObstacleSensingLost: ObstacleSensingLost,
-}

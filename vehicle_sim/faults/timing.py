@@ -6,7 +6,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 from gcs.faults import timing as kinds
 from vehicle_sim.faults.active import ActiveFault
 from vehicle_sim.faults.frames import Frame, frames
-from vehicle_sim.faults.impairment import DatagramChange, LinkImpairment
+from vehicle_sim.faults.impairment import DatagramChange
 from vehicle_sim.faults.samples import PAYLOAD, REPORTED, SCAN, SampleImpairment
 from vehicle_sim.faults.schedule import Moment
 from vehicle_sim.world.range_sensor import RangeSample
@@ -47,7 +47,7 @@ class MessageFilter(DatagramChange):
         return b"".join(data[frame.start : frame.end] for frame in kept) or None
 
 
-class LowRate(MessageFilter):
+class LowRate(MessageFilter, of=kinds.LowRate):
     """Rate limiter: an even share of each stream; messages of one stamp (the points of a scan) stay together."""
 
     def __init__(self, fault: ActiveFault, generator: np.random.Generator) -> None:
@@ -67,7 +67,7 @@ class LowRate(MessageFilter):
         return kept
 
 
-class GroundHang(MessageFilter):
+class GroundHang(MessageFilter, of=kinds.GroundHang):
     """Loss of all that the ground sends but its heartbeats."""
 
     direction = "command"
@@ -76,8 +76,6 @@ class GroundHang(MessageFilter):
         """Keep a heartbeat."""
         return bool(frame.message_id == mavlink.MAVLINK_MSG_ID_HEARTBEAT)
 
-
-LINK_IMPAIRMENTS: dict[type, type[LinkImpairment]] = {kinds.LowRate: LowRate, kinds.GroundHang: GroundHang}
 
 CLOCKS = (kinds.ClockSkew, kinds.ClockStep, kinds.StampWrap)
 
@@ -95,7 +93,7 @@ def clock_error(fault: ActiveFault, now: float) -> float:
     return float(settings.step)
 
 
-class StaleStamps(SampleImpairment):
+class StaleStamps(SampleImpairment, of=kinds.StaleStamps):
     """Stamps of an earlier time on all that is reported."""
 
     acts_on = frozenset({REPORTED, PAYLOAD, SCAN})
@@ -119,6 +117,3 @@ class StaleStamps(SampleImpairment):
         """Return the stamp by the schedule at the sample's own time: the sample may be reported for the second time."""
         settings: kinds.StaleStamps = self.fault.settings
         return max(time - settings.age, 0.0) if self.fault.schedule.at(time) is not None else max(time, 0.0)
-
-
-SAMPLE_IMPAIRMENTS: dict[type, type[SampleImpairment]] = {kinds.StaleStamps: StaleStamps}

@@ -7,7 +7,6 @@ from typing import Self
 import numpy as np
 
 from gcs.config import SystemConfig
-from gcs.faults import KINDS
 from gcs.faults import values as kinds
 from idc_controller.rotations_float import Vector, quaternion_of, rotation_vector
 from vehicle_sim.faults.active import WORLD, ActiveFault
@@ -87,7 +86,7 @@ class ValueEffect:
         raise AssertionError(f"no effect for {type(self._settings).__name__}")
 
 
-class ValueImpairment(SampleImpairment):
+class ValueImpairment(SampleImpairment, of=kinds.ValueFault):
     """A fault of the values of one channel."""
 
     def __init__(self, fault: ActiveFault, vehicle: int, system: SystemConfig) -> None:
@@ -141,7 +140,7 @@ class ValueImpairment(SampleImpairment):
         return sample if changed == sample else changed
 
 
-class SwappedVehicles(SampleImpairment):
+class SwappedVehicles(SampleImpairment, of=kinds.SwappedVehicles):
     """Two vehicles that report each other's data; one object for both."""
 
     acts_on = frozenset({REPORTED})
@@ -161,12 +160,6 @@ class SwappedVehicles(SampleImpairment):
         """Return the other vehicle's report."""
         self._latest[vehicle] = report
         return self._latest.get(self._other[vehicle], report)
-
-
-SAMPLE_IMPAIRMENTS: dict[type, type[SampleImpairment]] = {
-    **{kind.settings: ValueImpairment for kind in KINDS.values() if issubclass(kind.settings, kinds.ValueFault)},
-    kinds.SwappedVehicles: SwappedVehicles,
-}
 
 
 def noise_of(channel: str, system: SystemConfig) -> float:

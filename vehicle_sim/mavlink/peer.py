@@ -1,6 +1,7 @@
 """One peer of a vehicle, and its streams."""
 
 import math
+from dataclasses import fields
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -10,14 +11,12 @@ from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec, gather
 from gcs.mavlink.layout import Packed, PackedRun, packed
 from gcs.mavlink.messages import Message
-from vehicle_sim.mavlink.telemetry import Built
-from vehicle_sim.mavlink.telemetry_sample import TelemetrySample
+from vehicle_sim.mavlink.telemetry import Built, TelemetrySample
 
 TIME_TOLERANCE = 1e-6  # s: sums of steps are not exact
 
 _TEXT_LIMIT = 50
 _AUTOPILOT, _PAYLOAD = px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT
-_HEARTBEAT = mavlink.MAVLINK_MSG_ID_HEARTBEAT
 
 #: Messages of one sample, which begin with its stamp: never sent twice for the same one.
 _OF_ONE_SAMPLE = (
@@ -37,17 +36,12 @@ def default_intervals(intervals: StreamIntervals, telemetry_interval: float) -> 
     attitude and position at which it was made: its returns, then the message that ends it.
     """
     return {
-        (_AUTOPILOT, _HEARTBEAT): intervals.heartbeat,
-        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_SYS_STATUS): intervals.sys_status,
-        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE): intervals.extended_sys_state,
-        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_ATTITUDE): intervals.attitude,
-        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT): intervals.global_position_int,
-        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_GPS_RAW_INT): intervals.gps_raw_int,
-        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_HOME_POSITION): intervals.home_position,
-        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_BATTERY_STATUS): intervals.battery_status,
-        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_VFR_HUD): intervals.vfr_hud,
-        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_VIBRATION): intervals.vibration,
-        (_PAYLOAD, _HEARTBEAT): intervals.heartbeat,
+        # The settings have the names of the messages.
+        **{
+            (_AUTOPILOT, getattr(mavlink, f"MAVLINK_MSG_ID_{setting.name.upper()}")): getattr(intervals, setting.name)
+            for setting in fields(intervals)
+        },
+        (_PAYLOAD, mavlink.MAVLINK_MSG_ID_HEARTBEAT): intervals.heartbeat,
         (_PAYLOAD, mavlink.MAVLINK_MSG_ID_VIBRATION): intervals.vibration,
         (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION): telemetry_interval,
         (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED): telemetry_interval,

@@ -7,8 +7,7 @@ from gcs.config.vehicle_settings import VehicleLinkSettings
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address
 from vehicle_sim.mavlink.peer import TIME_TOLERANCE, Peer
-from vehicle_sim.mavlink.telemetry import Telemetry
-from vehicle_sim.mavlink.telemetry_sample import TelemetrySample
+from vehicle_sim.mavlink.telemetry import Telemetry, TelemetrySample
 
 NewPeer = Callable[[Address, bool], Peer]
 """Makes the peer of an address, with the payload unit's streams or without."""

@@ -339,3 +339,19 @@ class Telemetry:
         if measured is None:
             return ()
         return (_LOCAL_POSITION_NED.pack(self.time_boot_ms(measured.time), *measured.position, *measured.velocity),)
+
+
+class TelemetrySample:
+    """The messages of one vehicle at ``now`` (s), each built when it is first due, once for all peers."""
+
+    def __init__(self, telemetry: Telemetry, now: float) -> None:
+        self._builders = telemetry.builders
+        self._now = now
+        self._built: dict[tuple[int, int], Built] = {}
+
+    def messages(self, key: tuple[int, int]) -> Built:
+        """Return the messages of a component and message id."""
+        built = self._built.get(key)
+        if built is None:
+            built = self._built[key] = self._builders[key](self._now)
+        return built

@@ -29,24 +29,21 @@ class BaseMission:
     tables: Mapping[str, Any]
     files: Mapping[str, str]
 
-    def text(
-        self,
-        name: str,
-        seed: int | None = None,
-        faults: Sequence[Fault | Mapping[str, Any]] = (),
-        limits: Limits | Mapping[str, Any] | None = None,
-    ) -> str:
-        """The mission with ``faults`` after its own; another ``seed`` or ``limits`` in place of its own.
+    def tables_for(self, seed: int) -> Mapping[str, Any]:
+        """Return the tables of the mission that is flown with a seed: with every seed the same."""
+        return self.tables
 
-        Mappings are taken for the tables of a mission file as they are.
-        """
-        header = {**self.tables["mission"], "name": name[:_NAME], "seed": self.seed if seed is None else seed}
-        tables = {**self.tables, "mission": header}
+    def text(
+        self, name: str, seed: int | None = None, faults: Sequence[Fault] = (), limits: Limits | None = None
+    ) -> str:
+        """The mission with ``faults`` after its own; another ``seed`` or ``limits`` in place of its own."""
+        seed = self.seed if seed is None else seed
+        own = self.tables_for(seed)
+        tables = {**own, "mission": {**own["mission"], "name": name[:_NAME], "seed": seed}}
         if faults:
-            tables["fault"] = [*self.tables.get("fault", ()), *map(fault_table, faults)]
+            tables["fault"] = [*own.get("fault", ()), *map(fault_table, faults)]
         if limits is not None:
-            keys = limits if isinstance(limits, Mapping) else dataclasses.asdict(limits)
-            tables["limits"] = {key: value for key, value in keys.items() if value is not None}
+            tables["limits"] = {key: value for key, value in dataclasses.asdict(limits).items() if value is not None}
         return tables_text(tables)
 
     def write_files(self, folder: Path) -> None:

@@ -1,7 +1,7 @@
 """Missions of a campaign that are drawn: with every seed another random scenario, or field of obstacles."""
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
@@ -13,7 +13,7 @@ from gcs.campaign.scenarios.generator import KINDS, generate
 from gcs.config import read_system
 from gcs.config.validate import strict
 from gcs.errors import GcsError
-from gcs.mission.model import Fault, Limits, Name
+from gcs.mission.model import Name
 
 
 @strict
@@ -53,13 +53,6 @@ class DrawnMission(BaseMission):
         """Return the mission of a table of the campaign file, which the default system flies."""
         return cls(table.name, 1, read_system(None), {}, {}, table)
 
-    def text(
-        self,
-        name: str,
-        seed: int | None = None,
-        faults: Sequence[Fault | Mapping[str, Any]] = (),
-        limits: Limits | Mapping[str, Any] | None = None,
-    ) -> str:
-        """The mission of ``seed`` as :meth:`BaseMission.text` makes it."""
-        tables = tomllib.loads(self.table.text(self.seed if seed is None else seed))
-        return BaseMission(self.name, self.seed, self.system, tables, {}).text(name, seed, faults, limits)
+    def tables_for(self, seed: int) -> Mapping[str, Any]:
+        """Return the tables of the mission that is drawn with a seed."""
+        return tomllib.loads(self.table.text(seed))
