@@ -2,9 +2,9 @@
 
 from typing import Annotated
 
+from gcs.config.tables import Vector
 from gcs.faults.kind import LOST, FaultSettings, kind, names, parameter
 
-_Vector = tuple[float, float, float]
 _POSITION = "gps gnss position pos local_position global_position mocap vio baro barometer altitude"
 _JAMMED = "jamming jammed blackout"
 _Onboard = Annotated[
@@ -36,7 +36,7 @@ class PositionGlitch(FaultSettings):
 class PositionDrift(FaultSettings):
     """The measured position drifts away, the velocity does not, and the vehicle flies by it."""
 
-    velocity: Annotated[_Vector, parameter("of the drift, north-east-down", "m/s")]
+    velocity: Annotated[Vector, parameter("of the drift, north-east-down", "m/s")]
 
 
 @kind("attitude_lost", "sensors", names("attitude imu ahrs mag magnetometer compass heading yaw orientation", LOST))

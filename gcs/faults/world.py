@@ -3,10 +3,10 @@
 from typing import Annotated
 
 from gcs.config import SystemConfig
+from gcs.config.tables import Vector
 from gcs.faults.kind import FaultSettings, Problem, Vehicles, kind, names, parameter
 from idc_controller.errors import ParameterError
 
-_Vector = tuple[float, float, float]
 LEAST_MASS = 0.1  # kg that must be left of the payload
 
 
@@ -14,7 +14,7 @@ LEAST_MASS = 0.1  # kg that must be left of the payload
 class Wind(FaultSettings):
     """Wind, the same everywhere, with gusts: first-order coloured noise. Drag on payload and UAVs is quadratic."""
 
-    velocity: Annotated[_Vector, parameter("steady part, direction of the air's motion, north-east-down", "m/s")]
+    velocity: Annotated[Vector, parameter("steady part, direction of the air's motion, north-east-down", "m/s")]
     gust: Annotated[float, parameter("standard deviation north and east; half of it down", "m/s", ge=0.0, le=30.0)] = (
         0.0
     )

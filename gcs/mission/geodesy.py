@@ -2,7 +2,7 @@
 
 import math
 
-Vector = tuple[float, float, float]
+from gcs.config.tables import Vector
 
 SEMI_MAJOR_AXIS = 6378137.0
 """m"""

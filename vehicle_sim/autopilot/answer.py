@@ -13,6 +13,7 @@ class Answer(NamedTuple):
 
 
 ACCEPTED = Answer(mavlink.MAV_RESULT_ACCEPTED)
+UNSUPPORTED = Answer(mavlink.MAV_RESULT_UNSUPPORTED)
 
 
 def denied(text: str) -> Answer:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
-from vehicle_sim.autopilot.answer import ACCEPTED, Answer
+from vehicle_sim.autopilot.answer import ACCEPTED, UNSUPPORTED, Answer, denied
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.mavlink.control_owner import ControlOwner, Sender
 from vehicle_sim.mavlink.dispatcher import Command, Dispatcher, Request
@@ -21,9 +21,6 @@ _HARMLESS = (
     mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES,
 )
 
-_DENIED: int = mavlink.MAV_RESULT_DENIED
-_UNSUPPORTED: int = mavlink.MAV_RESULT_UNSUPPORTED
-
 
 class CommandServer:
     """COMMAND_LONG, COMMAND_INT and SET_MODE."""
@@ -37,9 +34,9 @@ class CommandServer:
         self._commands: dict[int, Callable[[Command, Request], Answer]] = {
             mavlink.MAV_CMD_COMPONENT_ARM_DISARM: self._arm_disarm,
             mavlink.MAV_CMD_DO_SET_MODE: self._do_set_mode,
-            mavlink.MAV_CMD_NAV_LAND: self._land,
-            mavlink.MAV_CMD_NAV_TAKEOFF: self._take_off,
-            mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: self._return,
+            mavlink.MAV_CMD_NAV_LAND: self._entering(px4.MODE_LAND),
+            mavlink.MAV_CMD_NAV_TAKEOFF: self._entering(px4.MODE_TAKEOFF),
+            mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: self._entering(px4.MODE_RETURN),
             mavlink.MAV_CMD_REQUEST_MESSAGE: streams.request_message,
             mavlink.MAV_CMD_SET_MESSAGE_INTERVAL: streams.set_message_interval,
             mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: self._request_capabilities,
@@ -54,9 +51,9 @@ class CommandServer:
     def _on_command(self, message: Command, request: Request) -> None:
         run = self._commands.get(message.command)
         if message.command not in _HARMLESS and self._owner.is_stranger(request.sender, request.now):
-            answer = Answer(_DENIED, "Command denied: another ground station is in control")
+            answer = denied("Command denied: another ground station is in control")
         elif run is None:
-            answer = Answer(_UNSUPPORTED)
+            answer = UNSUPPORTED
         else:
             answer = run(message, request)
         _explain(answer, request.peer)
@@ -66,9 +63,9 @@ class CommandServer:
 
     def _on_set_mode(self, message: mavlink.MAVLink_set_mode_message, request: Request) -> None:
         if self._owner.is_stranger(request.sender, request.now):
-            answer = Answer(_DENIED, "Mode denied: another ground station is in control")
+            answer = denied("Mode denied: another ground station is in control")
         elif not message.base_mode & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:
-            answer = Answer(_DENIED, "Mode denied: only custom modes are known")
+            answer = denied("Mode denied: only custom modes are known")
         else:
             answer = self._enter_mode(message.custom_mode, request.sender, request.now)
         _explain(answer, request.peer)
@@ -84,27 +81,22 @@ class CommandServer:
             return self._autopilot.arm(request.now, force)
         if message.param1 == 0.0:
             return self._autopilot.disarm(force)
-        return Answer(_DENIED, f"Arming denied: param1 {message.param1} is neither 0 nor 1")
+        return denied(f"Arming denied: param1 {message.param1} is neither 0 nor 1")
 
     def _do_set_mode(self, message: Command, request: Request) -> Answer:
         base_mode, main = whole(message.param1), whole(message.param2)
         sub = 0 if math.isnan(message.param3) else whole(message.param3)
         if base_mode is None or main is None or sub is None:
-            return Answer(_DENIED, "Mode denied: parameters are not whole numbers")
+            return denied("Mode denied: parameters are not whole numbers")
         if not base_mode & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:
-            return Answer(_DENIED, "Mode denied: only custom modes are known")
+            return denied("Mode denied: only custom modes are known")
         if main != px4.MainMode.AUTO:
             sub = 0
         return self._enter_mode(px4.encode_custom_mode(main, sub), request.sender, request.now)
 
-    def _land(self, message: Command, request: Request) -> Answer:
-        return self._autopilot.enter_mode(px4.MODE_LAND, request.now)
-
-    def _take_off(self, message: Command, request: Request) -> Answer:
-        return self._autopilot.enter_mode(px4.MODE_TAKEOFF, request.now)
-
-    def _return(self, message: Command, request: Request) -> Answer:
-        return self._autopilot.enter_mode(px4.MODE_RETURN, request.now)
+    def _entering(self, mode: int) -> Callable[[Command, Request], Answer]:
+        """Return what carries out a command that enters a mode."""
+        return lambda message, request: self._autopilot.enter_mode(mode, request.now)
 
     def _request_capabilities(self, message: Command, request: Request) -> Answer:
         version = mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION

@@ -7,12 +7,11 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
 from gcs.mavlink.messages import BROADCAST, Received
-from vehicle_sim.autopilot.answer import Answer
+from vehicle_sim.autopilot.answer import UNSUPPORTED, Answer
 from vehicle_sim.mavlink.dispatcher import Command, Request
 from vehicle_sim.mavlink.stream_requests import StreamRequests
 
 _COMMANDS = (mavlink.MAVLINK_MSG_ID_COMMAND_LONG, mavlink.MAVLINK_MSG_ID_COMMAND_INT)
-_UNSUPPORTED = Answer(mavlink.MAV_RESULT_UNSUPPORTED)
 
 
 class OtherComponents:
@@ -31,12 +30,12 @@ class OtherComponents:
         if received.message_id not in _COMMANDS:
             return
         if received.target_system == self._system_id:
-            self._answer(received, request, _UNSUPPORTED, px4.AUTOPILOT_COMPONENT)
+            self._answer(received, request, UNSUPPORTED, px4.AUTOPILOT_COMPONENT)
         elif received.target_system == px4.PAYLOAD_UNIT_SYSTEM:
             message: Any = received.message
             run = self._of_payload_unit.get(message.command)
             is_present = received.target_component in (BROADCAST, px4.PAYLOAD_UNIT_COMPONENT)
-            answer = _UNSUPPORTED if run is None or not is_present else run(message, request)
+            answer = UNSUPPORTED if run is None or not is_present else run(message, request)
             self._answer(received, request, answer, px4.PAYLOAD_UNIT_COMPONENT)
 
     def _answer(self, received: Received, request: Request, answer: Answer, component: int) -> None:

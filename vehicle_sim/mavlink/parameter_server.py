@@ -23,17 +23,13 @@ class ParameterServer:
 
     def _on_read(self, message: mavlink.MAVLink_param_request_read_message, request: Request) -> None:
         if message.param_index >= 0:
-            parameter = self._table.by_index(message.param_index)
+            self._send(self._table.by_index(message.param_index), request)
         else:
-            parameter = self._table.by_name(message.param_id)
-        if parameter is not None:
-            request.peer.reply(self._value(parameter))
+            self._send(self._table.by_name(message.param_id), request)
 
     def _on_list(self, message: mavlink.MAVLink_param_request_list_message, request: Request) -> None:
         for index in range(len(self._table)):
-            parameter = self._table.by_index(index)
-            if parameter is not None:
-                request.peer.reply(self._value(parameter))
+            self._send(self._table.by_index(index), request)
 
     def _on_set(self, message: mavlink.MAVLink_param_set_message, request: Request) -> None:
         name = message.param_id
@@ -44,15 +40,14 @@ class ParameterServer:
                 self._table.set_from_wire(name, message.param_value, message.param_type)
             except ParameterRefusalError as error:
                 request.peer.send_statustext(str(error))
-        parameter = self._table.by_name(name)
-        if parameter is not None:
-            request.peer.reply(self._value(parameter))
+        self._send(self._table.by_name(name), request)
 
-    def _value(self, parameter: Parameter) -> mavlink.MAVLink_param_value_message:
-        return mavlink.MAVLink_param_value_message(
-            parameter.name.encode(),
-            px4.parameter_to_wire(parameter.value, parameter.type),
-            parameter.type,
-            len(self._table),
-            self._table.index_of(parameter.name),
+    def _send(self, parameter: Parameter | None, request: Request) -> None:
+        """Send the value of a parameter; nothing of one that does not exist."""
+        if parameter is None:
+            return
+        value = px4.parameter_to_wire(parameter.value, parameter.type)
+        count, index = len(self._table), self._table.index_of(parameter.name)
+        request.peer.reply(
+            mavlink.MAVLink_param_value_message(parameter.name.encode(), value, parameter.type, count, index)
         )

@@ -5,13 +5,10 @@ import math
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.config.vehicle_settings import VehicleLinkSettings
-from vehicle_sim.autopilot.answer import ACCEPTED, Answer
+from vehicle_sim.autopilot.answer import ACCEPTED, UNSUPPORTED, Answer, denied
 from vehicle_sim.mavlink.control_owner import ControlOwner
 from vehicle_sim.mavlink.dispatcher import Command, Request
 from vehicle_sim.mavlink.telemetry import Telemetry
-
-_DENIED: int = mavlink.MAV_RESULT_DENIED
-_UNSUPPORTED: int = mavlink.MAV_RESULT_UNSUPPORTED
 
 
 class StreamRequests:
@@ -29,7 +26,7 @@ class StreamRequests:
         """Send a message once."""
         wanted = self._wanted(message)
         if wanted is None:
-            return Answer(_UNSUPPORTED)
+            return UNSUPPORTED
         built = self._telemetry.build(request.now, self._component, wanted)
         if not built:
             return Answer(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
@@ -40,9 +37,9 @@ class StreamRequests:
         """Start, stop or restore the stream of a message on the sender's link."""
         wanted = self._wanted(message)
         if wanted is None:
-            return Answer(_UNSUPPORTED)
+            return UNSUPPORTED
         if self._owner.is_stranger_at_its_address(request.sender, request.now):
-            return Answer(_DENIED, "Interval denied: another ground station flies by this link")
+            return denied("Interval denied: another ground station flies by this link")
         microseconds = message.param2
         if microseconds == -1.0:
             interval = math.inf
@@ -51,7 +48,7 @@ class StreamRequests:
         elif self._interval_min * 1e6 <= microseconds <= 3.6e9:
             interval = microseconds * 1e-6
         else:
-            return Answer(_DENIED)
+            return denied("")
         request.peer.set_interval(wanted, interval, self._component)
         return ACCEPTED
 

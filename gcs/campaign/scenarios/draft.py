@@ -10,15 +10,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gcs.campaign.scenarios.moving import FLIGHT, MOTIONS, displacement, motion_for, stop_and_go, top_speed
+from gcs.campaign.scenarios.moving import FLIGHT, MOTIONS, Random, displacement, motion_for, stop_and_go, top_speed
 from gcs.config import SystemConfig
 from gcs.mission.model import Lissajous, Mission, Obstacle
 from gcs.mission.motion import AnyMotion, LinearMotion
 from gcs.mission.route import Route
 from gcs.mission.toml_mission import route_through
 from gcs.planning.schedule import Schedule
+from idc_controller.arrays import Array
 from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.free_space import FreeSpace
@@ -26,9 +26,6 @@ from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.shape import Shape
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.guidance.detour import find_detour
-
-Array = NDArray[np.float64]
-Random = np.random.Generator
 
 END_CLEARANCE = 3.0
 """Clearance (m) of the formation where it takes off and lands."""

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcs.campaign.scenarios.passage import Passage, Passages, Place
 from gcs.mission.model import Obstacle
@@ -16,7 +15,6 @@ from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.shape import Shape
 from idc_controller.geometry.sphere import Sphere
 
-Array = NDArray[np.float64]
 Random = np.random.Generator
 
 END_CLEARANCE = 3.0

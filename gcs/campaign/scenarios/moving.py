@@ -4,11 +4,10 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcs.mission.motion import AnyMotion, CircleMotion, HarmonicMotion, LinearMotion, RandomWalkMotion, WaypointsMotion
+from idc_controller.arrays import Array
 
-Array = NDArray[np.float64]
 Random = np.random.Generator
 
 SLOWEST = 0.4  # m/s

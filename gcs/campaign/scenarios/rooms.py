@@ -6,8 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from gcs.campaign.scenarios.layout import Array, Layout, Random
+from gcs.campaign.scenarios.layout import Layout, Random
 from gcs.campaign.scenarios.passage import Passages
+from idc_controller.arrays import Array
 
 HEIGHT = 18.0
 """m: the walls cannot be flown over."""
