@@ -16,7 +16,6 @@ import numpy as np
 
 from gcs.config.flight_settings import DriverSettings, FlightSettings
 from gcs.config.schema import table_of, table_validator
-from gcs.config.sub_packages import ControlConfig, EstimationConfig, GuidanceConfig, SafetyConfig
 from gcs.config.tables import (
     MotionConfig,
     PayloadConfig,
@@ -33,16 +32,64 @@ from gcs.config.vehicle_settings import AutopilotSettings, VehicleLinkSettings
 from gcs.errors import UnusableInput
 from gcs.mavlink.settings import MavlinkSettings
 from idc_controller.arrays import Array
-from idc_controller.control.settings import MpcTuning
+from idc_controller.control.settings import ControllerSettings, GroundControlSettings, MpcSettings, MpcTuning
 from idc_controller.errors import ParameterError
+from idc_controller.estimation.settings import EstimatorSettings, InnovationMonitorSettings, WindSettings
+from idc_controller.guidance.settings import (
+    DetourSettings,
+    NavigatorSettings,
+    ProgressSettings,
+    RestingPlaceSettings,
+    SightSettings,
+)
 from idc_controller.parameters import SystemParameters, polygon_attachments
 from idc_controller.perception.settings import PerceptionSettings
+from idc_controller.safety.settings import FilterSettings, PlannerSettings
+from idc_controller.settings import SettingsTable
 from idc_controller.trajectory.settings import AvoidanceSettings, BrakingSettings
 
 _OTHER_FILES = {
     "mission": "this is a mission, no system file: gcs fly flies it",
     "campaign": "this is a campaign, no system file: gcs faults flies it",
 }
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class EstimationConfig(SettingsTable):
+    """Estimator, wind estimate and the monitor of its innovations."""
+
+    estimator: EstimatorSettings = field(default_factory=EstimatorSettings)
+    wind: WindSettings = field(default_factory=WindSettings)
+    innovation_monitor: InnovationMonitorSettings = field(default_factory=InnovationMonitorSettings)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class GuidanceConfig(SettingsTable):
+    """Progress along the mission, speed by sight, detours, and the stop of a team without set-points."""
+
+    progress: ProgressSettings = field(default_factory=ProgressSettings)
+    navigator: NavigatorSettings = field(default_factory=NavigatorSettings)
+    detour: DetourSettings = field(default_factory=DetourSettings)
+    sight: SightSettings = field(default_factory=SightSettings)
+    resting_place: RestingPlaceSettings = field(default_factory=RestingPlaceSettings)
+    braking: BrakingSettings = field(default_factory=BrakingSettings)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SafetyConfig(SettingsTable):
+    """The planner of the safety filter, and when it acts."""
+
+    planner: PlannerSettings = field(default_factory=PlannerSettings)
+    filter: FilterSettings = field(default_factory=FilterSettings)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ControlConfig(SettingsTable):
+    """The controller beside table ``controller``: adaptation to the load, model predictive control, on the ground."""
+
+    controller: ControllerSettings = field(default_factory=ControllerSettings)
+    mpc: MpcSettings = field(default_factory=MpcSettings)
+    ground: GroundControlSettings = field(default_factory=GroundControlSettings)
 
 
 @dataclass(frozen=True)
