@@ -115,6 +115,10 @@ class Result:
         return None if value is None else float(value)
 
 
+_OF_SUMMARY = ("cpu_s", "clearance_min_m", "uav_separation_min_m", "contacts", "duration_s", "real_time_factor")
+"""Columns that the summary has by the same names."""
+
+
 def summary_columns(flown: Flown) -> dict[str, Any]:
     """Return the columns that follow from the summary of a flight, and how it ended."""
     summary = flown.summary
@@ -124,18 +128,13 @@ def summary_columns(flown: Flown) -> dict[str, Any]:
         "reason": flown.reason,
         "exit_code": flown.exit_code,
         "wall_s": round(flown.wall, 1),
-        "cpu_s": summary.get("cpu_s"),
-        "clearance_min_m": summary.get("clearance_min_m"),
+        **{column: summary.get(column) for column in _OF_SUMMARY},
         "tilt_max_deg": max(angles, default=None),
-        "uav_separation_min_m": summary.get("uav_separation_min_m"),
-        "contacts": summary.get("contacts"),
-        "duration_s": summary.get("duration_s"),
         "position_rmse_m": summary.get("position_rmse_m", {}).get("total"),
         "slack_max_m": (summary.get("safety") or {}).get("slack_max_m"),
         "step_time_p50_ms": steps.get("p50"),
         "step_time_p99_ms": steps.get("p99"),
         "infeasible_steps": summary.get("solver", {}).get("infeasible_steps"),
-        "real_time_factor": summary.get("real_time_factor"),
         "landed": landing.get("on_ground"),
         "touchdown_mps": landing.get("speed_mps"),
         "end_tilt_deg": landing.get("tilt_deg"),

@@ -42,10 +42,10 @@ def write_records(path: Path, kind: type[Any], records: Iterable[Any], decimals:
     return write_csv(path, [field.name for field in fields(kind)], rows)
 
 
-def write_results(out: Path, columns: Sequence[str], results: Sequence[Result], name: str = "results") -> list[Path]:
+def write_results(out: Path, columns: Sequence[str], results: Sequence[Result]) -> list[Path]:
     """Write ``results.csv``, whose bytes depend on the flights alone, and the other columns as ``timing.csv``."""
     timing = ("number", "name", *(column for column in columns if column in TIMING))
-    tables = {f"{name}.csv": flight_columns(columns), "timing.csv": timing}
+    tables = {"results.csv": flight_columns(columns), "timing.csv": timing}
     return [write_csv(out / file, chosen, [r.row(chosen) for r in results]) for file, chosen in tables.items()]
 
 

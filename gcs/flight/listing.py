@@ -2,23 +2,23 @@
 
 from dataclasses import asdict
 
-from gcs.config.flight_settings import DEFAULTS, FlightSettings
+from gcs.config.flight_settings import DEFAULTS
 from gcs.flight.condition import Reaction
 from gcs.flight.detectors import MonitorAlarm
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.guarantee import GuaranteeAlarm
 
 
-def listing(settings: FlightSettings = DEFAULTS) -> str:
-    """Return the whole page, with the thresholds of ``settings``."""
+def listing() -> str:
+    """Return the whole page, with the default thresholds."""
     reactions = "\n".join(f"| `{reaction.name}` | {reaction.meaning} |" for reaction in Reaction if reaction)
     failsafes = "\n".join(
-        f"| `{row.code}` | {row.meaning.format(**asdict(settings.failsafe))} | {row.check.value} "
+        f"| `{row.code}` | {row.meaning.format(**asdict(DEFAULTS.failsafe))} | {row.check.value} "
         f"| `{row.reaction.name}` | {row.severity.name.lower()} | {row.action} |"
         for row in Failsafe
     )
     alarms = "\n".join(
-        f"| `{row.code}` | {row.meaning.format(**asdict(settings.monitor))} | {row.scope.value} "
+        f"| `{row.code}` | {row.meaning.format(**asdict(DEFAULTS.monitor))} | {row.scope.value} "
         f"| {row.severity.name.lower()} | {row.action} |"
         for row in (*MonitorAlarm, *GuaranteeAlarm)
     )

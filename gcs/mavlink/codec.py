@@ -122,15 +122,15 @@ def _payloads(frames: NDArray[np.uint8], run: int) -> bytes:
     return frames.reshape(run, -1)[:, HEADER:-CHECKSUM].tobytes()
 
 
-def gather(frames: Sequence[bytes], limit: int = DATAGRAM_LIMIT) -> list[bytes]:
-    """Return frames in order, joined into as few datagrams as possible of at most ``limit`` bytes each."""
+def gather(frames: Sequence[bytes]) -> list[bytes]:
+    """Return frames in order, joined into as few datagrams as possible of at most :data:`DATAGRAM_LIMIT` bytes each."""
     datagrams: list[bytes] = []
     group: list[bytes] = []
     size = 0
-    if sum(map(len, frames)) <= limit:
+    if sum(map(len, frames)) <= DATAGRAM_LIMIT:
         return [b"".join(frames)] if frames else []
     for frame in frames:
-        if group and size + len(frame) > limit:
+        if group and size + len(frame) > DATAGRAM_LIMIT:
             datagrams.append(b"".join(group))
             group, size = [], 0
         group.append(frame)

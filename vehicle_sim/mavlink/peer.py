@@ -145,11 +145,12 @@ class Peer:
             self._replies += [self._codecs[component].frame(message) for message in messages]
             self.next_due = -math.inf
 
-    def send_statustext(self, text: str, severity: int = mavlink.MAV_SEVERITY_WARNING) -> None:
-        """Send a text to the operator as STATUSTEXT, in pieces of its length."""
+    def send_statustext(self, text: str) -> None:
+        """Send a warning to the operator as STATUSTEXT, in pieces of its length."""
         data = text.encode("ascii", "replace")
         for start in range(0, len(data), _TEXT_LIMIT):
-            self.reply(mavlink.MAVLink_statustext_message(severity, data[start : start + _TEXT_LIMIT]))
+            piece = data[start : start + _TEXT_LIMIT]
+            self.reply(mavlink.MAVLink_statustext_message(mavlink.MAV_SEVERITY_WARNING, piece))
 
     def datagrams(self, sample: TelemetrySample, now: float) -> list[bytes]:
         """Return replies and what is due of ``sample``, in as few datagrams as possible."""

@@ -53,9 +53,9 @@ class BaseMission:
             write_text(folder / name, text)
 
 
-def read_base(path: Path, config: Path | None = None) -> BaseMission:
+def read_base(path: Path) -> BaseMission:
     """Read a mission of any format. Raises :class:`gcs.config.UnusableFile` like :func:`read_mission`."""
-    mission = read_mission(path, config)
+    mission = read_mission(path)
     path = mission.path
     if mission_format(path, read_text(path)) == "toml":
         tables = read_toml(path).data

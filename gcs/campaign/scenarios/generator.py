@@ -18,7 +18,7 @@ from gcs.campaign.scenarios.forest import forest
 from gcs.campaign.scenarios.layout import Layout, Random
 from gcs.campaign.scenarios.moving import SLOWEST, STOP_AND_GO_SPEEDS
 from gcs.campaign.scenarios.overhang import overhang
-from gcs.campaign.scenarios.passage import Passage, Passages
+from gcs.campaign.scenarios.passage import Passage, Passages, passage_comments
 from gcs.campaign.scenarios.rooms import rooms
 from gcs.campaign.toml_text import mission_text
 from gcs.config import SystemConfig, read_system
@@ -64,9 +64,7 @@ def generate(
     name = f"{number:04d}-{kind}"
     for _ in range(MAX_DRAFTS):
         if (drawn := draw(random)) is not None:
-            comments = [f"Random course {number} of seed {seed}, kind {kind}."]
-            if drawn.passage is not None:
-                comments.append(f"For the formation {drawn.passage}.")
+            comments = [f"Random course {number} of seed {seed}, kind {kind}.", *passage_comments(drawn.passage)]
             noise_seed = int(random.integers(2**31))
             text = mission_text(name, noise_seed, drawn.reference, drawn.obstacles, HELD_TO, comments)
             return RandomScenario(number, kind, name, text, drawn.passage)

@@ -97,6 +97,11 @@ class Passages:
         return "impassable" if too_narrow else "marginal"
 
 
+def passage_comments(passage: Passage | None) -> list[str]:
+    """Return what a mission file says of its passage."""
+    return [] if passage is None else [f"For the formation {passage}."]
+
+
 def places_of(mission: Mission) -> tuple[Place, ...]:
     """Return the places of the payload between which a mission leads straight, from above the pad to above the goal.
 

@@ -14,6 +14,7 @@ from pydantic import Field, TypeAdapter
 
 from gcs.campaign.folder import digest, plain
 from gcs.campaign.scenarios.generator import HELD_TO
+from gcs.campaign.scenarios.passage import passage_comments
 from gcs.campaign.suites.course import MOST_OBSTACLES, Course, checked_passage
 from gcs.campaign.suites.yaml_file import YamlFile, read_yaml
 from gcs.campaign.toml_text import mission_text
@@ -96,9 +97,7 @@ def read_aerialist(path: Path, config: Path | None, speed: float, seed: int) -> 
     passage = checked_passage(
         mission, obstacles, lambda i, reason: file.problem(keys.plan if i is None else keys.obstacle(i), reason)
     )
-    comments = [f"Test {path.name} of Aerialist, its mission {plan.name}."]
-    if passage is not None:
-        comments.append(f"For the formation {passage}.")
+    comments = [f"Test {path.name} of Aerialist, its mission {plan.name}.", *passage_comments(passage)]
     if "wind" in _table(file, "simulation"):
         comments.append("Left out: simulation.wind.")
     text = read_text(plan)

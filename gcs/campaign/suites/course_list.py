@@ -10,6 +10,7 @@ from typing import Annotated
 from pydantic import Field, TypeAdapter
 
 from gcs.campaign.scenarios.generator import HELD_TO
+from gcs.campaign.scenarios.passage import passage_comments
 from gcs.campaign.suites.course import MOST_OBSTACLES, Course, checked_passage
 from gcs.campaign.toml_text import mission_text
 from gcs.config import SystemConfig
@@ -73,24 +74,23 @@ def read_list(path: Path, system: SystemConfig, speed: float, seed: int) -> Iter
     adapter = TypeAdapter(_Line)
     for number, text in enumerate(read_text(path).split("\n"), start=1):
         if text.strip():
-            yield _course(path, number, _read(path, number, text, adapter), system, speed, seed)
+            yield _course(path, number, _read(f"{path}: line {number}", text, adapter), system, speed, seed)
 
 
-def _read(path: Path, number: int, text: str, adapter: TypeAdapter[_Line]) -> _Line:
+def _read(where: str, text: str, adapter: TypeAdapter[_Line]) -> _Line:
     try:
         data = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise UnusableFile([f"{path}: line {number}: not valid JSON: {why_unparsed(error)}"]) from error
+        raise UnusableFile([f"{where}: not valid JSON: {why_unparsed(error)}"]) from error
     if not isinstance(data, dict):
-        raise UnusableFile([f"{path}: line {number}: must be a JSON object"])
-    return validated(adapter, data, lambda key, reason: _problem(path, number, key, reason))
-
-
-def _problem(path: Path, number: int, key: Key, reason: str) -> str:
-    return f"{path}: line {number}: {dotted(key)}: {reason}"
+        raise UnusableFile([f"{where}: must be a JSON object"])
+    return validated(adapter, data, lambda key, reason: f"{where}: {dotted(key)}: {reason}")
 
 
 def _course(path: Path, number: int, line: _Line, system: SystemConfig, speed: float, seed: int) -> Course:
+    def problem(key: Key, reason: str) -> str:
+        return f"{path}: line {number}: {dotted(key)}: {reason}"
+
     poles = [
         Obstacle(f"pole {i}", (p.north, p.east, -p.height / 2.0), Pole(p.radius, p.height), line.known)
         for i, p in enumerate(line.poles, start=1)
@@ -107,13 +107,11 @@ def _course(path: Path, number: int, line: _Line, system: SystemConfig, speed: f
     keys: list[Key] = [*(("poles", i) for i in range(len(poles))), *(("boxes", i) for i in range(len(boxes)))]
     obstacles = [*poles, *boxes]
     problems = [
-        _problem(path, number, ("points", i), reason)
-        for i, point in enumerate(line.points)
-        if (reason := _unreachable(point, system))
+        problem(("points", i), reason) for i, point in enumerate(line.points) if (reason := _unreachable(point, system))
     ]
     if len(obstacles) > MOST_OBSTACLES:
         reason = f"{len(obstacles)} poles and boxes (limit {MOST_OBSTACLES})"
-        problems.append(_problem(path, number, ("poles",), reason))
+        problems.append(problem(("poles",), reason))
     if problems:
         raise UnusableFile(problems)
     own_speed = min(line.speed or speed, system.motion.speed_max)
@@ -122,12 +120,10 @@ def _course(path: Path, number: int, line: _Line, system: SystemConfig, speed: f
     passage = checked_passage(
         Mission(name, path, seed, system, route),
         obstacles,
-        lambda i, reason: _problem(path, number, ("points",) if i is None else keys[i], reason),
+        lambda i, reason: problem(("points",) if i is None else keys[i], reason),
     )
     reference = {"points": line.points, "speed": own_speed, "return_home": line.return_home}
-    comments = [f"Line {number} of {path.name}."]
-    if passage is not None:
-        comments.append(f"For the formation {passage}.")
+    comments = [f"Line {number} of {path.name}.", *passage_comments(passage)]
     content = mission_text(name, seed, reference, obstacles, HELD_TO, comments)
     return Course(name, KIND, f"{path}: line {number}", passage, content)
 
