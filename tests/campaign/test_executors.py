@@ -150,7 +150,7 @@ def test_calls_under_way_end_with_the_executor(tmp_path):
 
 def test_processes_end_with_the_one_that_started_them(tmp_path):
     program = (
-        "import pathlib, sys; sys.path.insert(0, 'tests/support')\n"
+        "import pathlib, sys; sys.path[:0] = 'tests/support', 'tests/campaign'\n"
         "from gcs.campaign.executors import WorkerProcesses\nfrom test_executors import go_on\n"
         "if __name__ == '__main__': WorkerProcesses(1).submit(go_on, pathlib.Path(sys.argv[1])).result()"
     )

@@ -8,6 +8,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
 from flights import MISSIONS
 
+from gcs.flight import stack
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.condition import Trigger
 from gcs.flight.failsafe import Failsafe
@@ -33,7 +34,7 @@ class Watched(Flight):
             estimator=None, controller=SimpleNamespace(parameters=PARAMETERS, guidance=Guidance()),
             choose_stop_plan=self.chosen.append,
         )  # fmt: skip
-        super().__init__(MISSION, team, control, AlarmLog())
+        super().__init__(MISSION, team, control, AlarmLog(), stack.obstacle_map(MISSION))
         self.phase = phase
         if phase in (Phase.CLIMB, Phase.FLY, Phase.LAND):
             self.mission_trajectory = MissionTrajectory(MISSION, np.zeros(3), 0.0)

@@ -95,7 +95,7 @@ def test_parallel_swarms_of_equal_seed_fly_alike_and_land_after_link_loss(tmp_pa
             assert running.stdout.read() == ""
     for name in "abc":
         check_landed(read_table(tmp_path / name / "truth.csv"))
-        assert {path.name for path in (tmp_path / name).iterdir()} == {"truth.csv", "modes.csv"}
+        assert {path.name for path in (tmp_path / name).iterdir()} == {"truth.csv", "modes.csv", "forces.csv"}
     truths = [(tmp_path / name / "truth.csv").read_bytes() for name in "abc"]
     assert truths[0] == truths[1]
     assert truths[0] != truths[2]
