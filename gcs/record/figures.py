@@ -2,6 +2,7 @@
 
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 from matplotlib.figure import Figure
 
@@ -14,8 +15,9 @@ SERIES = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#8C
 
 def save_picture(figure: Figure, path: Path, dpi: int) -> Path:
     """Write a figure to ``path`` and return it. Raises :class:`UnusableInput` if it cannot be written."""
+    fast: dict[str, Any] = {"pil_kwargs": {"compress_level": 1}}  # half the time of 6, a fifth more bytes
     try:
-        figure.savefig(path, dpi=dpi, pil_kwargs={"compress_level": 1})  # half the time of 6, a fifth more bytes
+        figure.savefig(path, dpi=dpi, **(fast if path.suffix.lower() == ".png" else {}))
     except OSError as error:
         with suppress(OSError):
             path.unlink(missing_ok=True)

@@ -15,11 +15,11 @@ from gcs.mission.flown_legs import flown_legs
 from gcs.mission.model import Mission, Obstacle
 from gcs.mission.route import Route
 from gcs.mission.route_clearance import free_space, route_places, standing_obstacles
+from gcs.record.figures import FLOWN, LIMIT, OBSTACLE, SERIES, save_picture
 from idc_controller.arrays import Array
 from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 
-# The palette of Okabe and Ito: distinct for colour-blind readers, too.
-_ROUTE, _KNOWN, _UNKNOWN, _NARROWEST, _FENCE = "#0072B2", "#CC79A7", "#E69F00", "#D55E00", "#009E73"
+_ROUTE, _KNOWN, _UNKNOWN, _NARROWEST, _FENCE = FLOWN, OBSTACLE, SERIES[1], LIMIT, SERIES[2]
 _SPACING = 0.1
 """m along the route, between places at which the narrowest gap is looked for."""
 _SHOWN = 40
@@ -39,10 +39,7 @@ def write_map(mission: Mission, path: Path) -> None:
     kinds = figure.canvas.get_supported_filetypes()
     if (kind := path.suffix.lower().lstrip(".")) not in kinds:
         raise UnusableInput(f"--plot {path}: images of kind {kind!r} are not written, only of {', '.join(kinds)}")
-    try:
-        figure.savefig(path, dpi=130)
-    except OSError as error:
-        raise UnusableInput(f"--plot {path}: cannot be written: {error.strerror}") from None
+    save_picture(figure, path, 130)
 
 
 def draw_map(mission: Mission) -> Figure:
