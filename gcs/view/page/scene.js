@@ -113,9 +113,9 @@ export class Scene {
     };
     /** @type {(import('./scene/panel.js').Part|null|false|undefined)[]} */
     const parts = [
-      { name: 'payload', colour: 'payload', look: 'area', shown: true, show: null },
+      { name: run.meta.source === 'truth' ? 'payload' : 'payload, as estimated', colour: 'payload', look: 'area', shown: true, show: null },
       this.obstacles.obstacles.length > 0 && { name: 'obstacles', colour: 'obstacle', look: 'area', shown: true, show: toggle(this.obstacles.group) },
-      { name: 'formation hull', colour: 'flown', look: 'glass', shown: true, show: toggle(this.formation.hull) },
+      this.formation.uavs.length > 0 && { name: 'formation hull', colour: 'flown', look: 'glass', shown: true, show: toggle(this.formation.hull) },
       this.estimate.position && { name: 'estimate', colour: 'estimate', look: 'glass', shown: true, show: toggle(this.estimate.mesh) },
       this.fence.children.length > 0 && { name: 'fence', colour: 'limit', look: 'glass', shown: true, show: toggle(this.fence) },
       !this.detected.isEmpty && { name: 'ground’s map', colour: 'detected-wire', look: 'wire', shown: true, show: toggle(this.detected.group) },

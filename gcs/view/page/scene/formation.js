@@ -62,6 +62,7 @@ export class Formation {
     });
     this.corners = (run.meta.hull ?? []).map((/** @type {number[]} */ corner) => toScene(corner));
     this.hull = new Group();
+    this.hull.visible = this.uavs.length > 0;
     this.skin = new Mesh(new BufferGeometry(), palette.translucent('flown', 0.1));
     this.edges = new LineSegments(new BufferGeometry(), palette.hairline('flown', 0.55));
     this.hull.add(this.skin, this.edges);
