@@ -24,6 +24,8 @@ _SPACING = 0.1
 """m along the route, between places at which the narrowest gap is looked for."""
 _SHOWN = 40
 """Legs whose ends are numbered."""
+_NAMED = 30
+"""Obstacles whose names are written; of more, none but the narrowest gap's."""
 _BESIDE = 4.0
 """m about the route and what stands."""
 
@@ -55,7 +57,7 @@ def draw_map(mission: Mission) -> Figure:
     )
     _draw_fence(ax, mission)
     for obstacle in mission.obstacles:
-        _draw_obstacle(ax, obstacle)
+        _draw_obstacle(ax, obstacle, named=len(mission.obstacles) <= _NAMED)
     ax.plot(places[:, 1], places[:, 0], color=_ROUTE, lw=1.2, label="route of the payload")
     _number_legs(ax, mission)
     if (gap := narrowest_gap(mission, places)) is not None:
@@ -115,14 +117,15 @@ def _draw_fence(ax: Axes, mission: Mission) -> None:
             ax.add_patch(Polygon(np.array(ring)[:, ::-1], fill=False, edgecolor=_FENCE, ls=style, lw=1.6, label=label))
 
 
-def _draw_obstacle(ax: Axes, obstacle: Obstacle) -> None:
+def _draw_obstacle(ax: Axes, obstacle: Obstacle, *, named: bool) -> None:
     outline = obstacle.shape.plan_view.outline() + np.array(obstacle.position[:2])
     colour, label = (_KNOWN, "on the map") if obstacle.known else (_UNKNOWN, "not on the map")
     label = f"obstacle {label}" if obstacle.motion is None else f"moving obstacle {label}, at the start"
     style = "-" if obstacle.motion is None else ":"
     ax.add_patch(Polygon(outline[:, ::-1], facecolor=colour, edgecolor="black", ls=style, alpha=0.7, label=label))
     north, east = obstacle.position[:2]
-    ax.annotate(obstacle.name, (east, north), ha="center", va="center", fontsize=7)
+    if named:
+        ax.annotate(obstacle.name, (east, north), ha="center", va="center", fontsize=7)
 
 
 def _number_legs(ax: Axes, mission: Mission) -> None:

@@ -19,6 +19,8 @@ POSTER = "poster.png"
 _ANGLES = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
 _NEAR, _SOON = 8.0, 6.0
 """Half the width of the side view (m); time before and after the moment, of which it shows the path (s)."""
+_NAMED = 12
+"""Obstacles whose names are written; of more, that of the nearest alone."""
 _BESIDE = 4.0
 """Obstacles that are farther than this in front of or behind the formation are faint in the side view (m)."""
 
@@ -74,7 +76,7 @@ def _draw(ax: Axes, run: RunData, row: int, axes: Array, span: float, nearest: N
         far = bool(np.isfinite(span)) and beside > _BESIDE
         alpha, label = 0.12 if far else 0.8, "" if number else "obstacle"
         ax.fill(*seen.T, fc=OBSTACLE, ec="black", lw=0.7, alpha=alpha, label=label)
-        if not far:
+        if not far and (len(run.obstacles) <= _NAMED or (nearest and nearest.obstacle == obstacle.name)):
             ax.annotate(obstacle.name, place, ha="center", va="center", fontsize=8, clip_on=True, annotation_clip=True)
     if run.number_of_uavs:
         points = (hull_points(run.formation(slice(row, row + 1))) + run.payload_position[row]) @ axes.T
