@@ -17,7 +17,7 @@ Rows = NDArray[np.int64]
 RUN_LIMIT = 256
 """Largest number of messages of a run: as many as there are sequence numbers."""
 _SEQUENCE, _STAMP = 4, 4
-_STAMP_BYTES = 8
+STAMP_BYTES = 8
 """Bytes of the stamp of a record."""
 _end_of_frame = inlined(end_of_frame)
 
@@ -164,7 +164,7 @@ def stamped_frames(data: Cells1, ends: Indices1, stamps: Indices1) -> Cells1:
         stamps: Of each of them (k,), written as 8 bytes, big-endian.
     """
     all_bytes = data.shape[0]
-    records, count, at = np.empty(all_bytes + (all_bytes // 8 + 1) * _STAMP_BYTES, np.uint8), 0, 0
+    records, count, at = np.empty(all_bytes + (all_bytes // 8 + 1) * STAMP_BYTES, np.uint8), 0, 0
     for k in range(ends.shape[0]):
         size = ends[k]
         while at < size:
@@ -172,10 +172,25 @@ def stamped_frames(data: Cells1, ends: Indices1, stamps: Indices1) -> Cells1:
             if end == 0:
                 at += 1
                 continue
-            for byte in range(_STAMP_BYTES):
-                records[count + byte] = (stamps[k] >> 8 * (_STAMP_BYTES - 1 - byte)) & 0xFF
-            count += _STAMP_BYTES
+            for byte in range(STAMP_BYTES):
+                records[count + byte] = (stamps[k] >> 8 * (STAMP_BYTES - 1 - byte)) & 0xFF
+            count += STAMP_BYTES
             records[count : count + end - at] = data[at:end]
             count += end - at
             at = end
     return records[:count]
+
+
+@kernel
+def frames_in_log(log: Cells1) -> Indices1:
+    """Return where the frames of a telemetry log begin (n,), each behind a stamp, up to the first that is not whole."""
+    size = log.shape[0]
+    begins, count, at = np.empty(size // (STAMP_BYTES + 8) + 1, np.int64), 0, STAMP_BYTES
+    while at < size:
+        end = _end_of_frame(log, at, size)
+        if end == 0:
+            break
+        begins[count] = at
+        count += 1
+        at = end + STAMP_BYTES
+    return begins[:count]

@@ -6,14 +6,14 @@ from pathlib import Path
 import numpy as np
 
 from gcs.errors import UnusableInput
-from idc_controller.arrays import Array
+from gcs.mavlink.frame_kernels import STAMP_BYTES, frames_in_log
+from gcs.mavlink.frames import HEADER, V2
+from gcs.mavlink.link_statistics import NUMBERS
+from gcs.mavlink.px4 import GROUND_SYSTEM, PAYLOAD_UNIT_SYSTEM
+from idc_controller.arrays import Array, Cells, Indices
 
-_HEADER, _MAGIC = 8, 0xFD
-"""Bytes of a time stamp, and the first of a frame of MAVLink 2."""
-_TIMED = {30, 31, 32, 33}
+_TIMED = (30, 31, 32, 33)
 """Messages of the streams that begin with ``time_boot_ms``: ATTITUDE, ATTITUDE_QUATERNION, positions."""
-_GROUND = 200
-"""System ids from here on are ground stations."""
 
 
 def link_figures(path: Path) -> tuple[Array, list[str], Mapping[str, Array]]:
@@ -25,7 +25,7 @@ def link_figures(path: Path) -> tuple[Array, list[str], Mapping[str, Array]]:
     or has no frame. Raises :class:`UnusableInput` for a file that cannot be read.
     """
     try:
-        data = path.read_bytes()
+        data = np.fromfile(path, np.uint8)
     except FileNotFoundError:
         return np.empty(0), [], {}
     except OSError as error:
@@ -33,7 +33,7 @@ def link_figures(path: Path) -> tuple[Array, list[str], Mapping[str, Array]]:
     stamps, systems, missing, ages = _frames(data)
     if not len(stamps):
         return np.empty(0), [], {}
-    found = np.unique(systems[systems < _GROUND])
+    found = np.unique(systems[systems != GROUND_SYSTEM])
     first = ages[(systems == found[0]) & np.isfinite(ages)] if len(found) else np.empty(0)
     time = stamps / 1e3 - (first.min() if len(first) else stamps[0] / 1e3)
     begin = float(np.floor(time.min() / 1e3))
@@ -52,34 +52,31 @@ def link_figures(path: Path) -> tuple[Array, list[str], Mapping[str, Array]]:
             if timed.any():
                 age = np.bincount(second[timed], weights=ages[timed] - ages[timed].min(), minlength=size)
                 figures["latency"][:, column] = age / arrived
-    names = [f"vehicle {system}" if system < 100 else "payload" for system in found.tolist()]
+    names = ["payload" if system == PAYLOAD_UNIT_SYSTEM else f"vehicle {system}" for system in found.tolist()]
     # The last second is not a whole one.
     return np.arange(begin + 0.5, begin + size - 1.0), names, {name: values[:-1] for name, values in figures.items()}
 
 
-def _frames(data: bytes) -> tuple[Array, Array, Array, Array]:
+def _frames(data: Cells) -> tuple[Array, Indices, Array, Array]:
     """Return of each frame its stamp (us), system, messages missing before it, and age (ms; NaN: it has no time)."""
-    stamps, systems, missing, ages = [], [], [], []
+    begins = frames_in_log(data)
+    begins = begins[data[begins] == V2]
+    stamps = _number(data, begins - STAMP_BYTES, STAMP_BYTES)
+    sequences, systems, components = (data[begins + at].astype(np.int64) for at in (4, 5, 6))
+    missing = np.zeros(len(begins))
     last: dict[int, int] = {}
-    at, end = 0, len(data) - _HEADER - 12
-    while at <= end:
-        head = at + _HEADER
-        if data[head] != _MAGIC:  # of another version, or damaged: from the next byte on
-            at += 1
-            continue
-        length = data[head + 1]
-        sequence, system = data[head + 4], data[head + 5]
-        source = system << 8 | data[head + 6]
-        stamp = int.from_bytes(data[at:head], "big")
-        gap = (sequence - last.get(source, sequence - 1) - 1) % 256
-        age = np.nan
-        if data[head + 7] in _TIMED and not data[head + 8] and not data[head + 9] and length >= 4:
-            age = stamp / 1e3 - int.from_bytes(data[head + 10 : head + 14], "little")
-        stamps.append(stamp)
-        systems.append(system)
-        missing.append(gap if gap < 128 else 0)  # what comes behind a later one was overtaken
-        ages.append(age)
-        if gap < 128:
-            last[source] = sequence
-        at = head + length + (25 if data[head + 2] & 1 else 12)
-    return np.array(stamps, dtype=float), np.array(systems), np.array(missing, dtype=float), np.array(ages)
+    for k, (source, sequence) in enumerate(zip((systems << 8 | components).tolist(), sequences.tolist(), strict=True)):
+        gap = (sequence - last.get(source, sequence - 1) - 1) % NUMBERS
+        if gap < NUMBERS // 2:  # what comes behind a later one was overtaken
+            missing[k], last[source] = gap, sequence
+    timed = np.isin(_number(data, begins + 7, -3), _TIMED) & (data[begins + 1] >= 4)
+    ages = np.full(len(begins), np.nan)
+    ages[timed] = stamps[timed] / 1e3 - _number(data, begins[timed] + HEADER, -4)
+    return stamps.astype(float), systems, missing, ages
+
+
+def _number(data: Cells, at: Indices, size: int) -> Indices:
+    """Return the numbers (n,) of ``size`` bytes, big-endian, that begin ``at`` (n,); negative: little-endian."""
+    shifts = 8 * np.arange(abs(size))
+    read = data[at[:, None] + np.arange(abs(size))].astype(np.int64)
+    return np.asarray((read << (shifts[::-1] if size > 0 else shifts)).sum(axis=1))

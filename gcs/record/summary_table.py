@@ -80,7 +80,7 @@ def _figures(summary: Mapping[str, Any]) -> Table:
 
 
 def _details(summary: Mapping[str, Any]) -> Table:
-    """Return what tells a developer how the flight was flown."""
+    """Return the figures of how the flight was flown, for developers."""
     rmse, tilt, safety = summary["position_rmse_m"], summary["payload_tilt_max_deg"], summary["safety"]
     steps, parts = summary["step_time_ms"], summary.get("step_parts_ms")
     table = _table()

@@ -41,7 +41,7 @@ class Rules(NamedTuple):
     incidence: float
     """Least cosine between a ray that passes through points, and their surface's normal."""
     prior: Array1
-    """Scans that hit and that pass what stands, before any has told otherwise (2,)."""
+    """Scans that hit and that pass what stands, as counted before the first one (2,)."""
     evidence: Array1
     """Nats of one scan's hit, and most of them; least of one that passes through, and along a surface (4,)."""
     memory: float

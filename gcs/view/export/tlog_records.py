@@ -5,12 +5,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from gcs.errors import UnusableInput
+from gcs.mavlink.frame_kernels import STAMP_BYTES
 from gcs.mavlink.frames import V1, V2, end_of_frame
 from gcs.mavlink.layout import LAYOUTS, Layout
 
 TELEMETRY = "telemetry.tlog"
-_STAMP = 8
-"""Bytes of a time stamp."""
 _HEADER = {True: 6, False: 10}
 """Bytes of a frame before its payload, by whether it is of MAVLink 1."""
 
@@ -47,8 +46,8 @@ def records(run_dir: Path) -> Iterator[Record]:
     except OSError as error:
         raise UnusableInput(f"{path}: cannot be read: {error.strerror}") from None
     at = 0
-    while at + _STAMP < len(log):
-        start = at + _STAMP
+    while at + STAMP_BYTES < len(log):
+        start = at + STAMP_BYTES
         end = end_of_frame(log, start, len(log))
         if not end:
             if log[start] in (V1, V2):  # its end is missing
@@ -59,7 +58,7 @@ def records(run_dir: Path) -> Iterator[Record]:
 
 
 def _record(record: bytes) -> Record:
-    frame = record[_STAMP:]
+    frame = record[STAMP_BYTES:]
     of_first_version = frame[0] == V1
     payload = frame[_HEADER[of_first_version] :][: frame[1]]
     system = frame[3] if of_first_version else frame[5]
