@@ -19,13 +19,13 @@ from gcs.record.figures import FLOWN, LIMIT, OBSTACLE, SERIES, save_picture
 from idc_controller.arrays import Array
 from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 
-_ROUTE, _KNOWN, _UNKNOWN, _NARROWEST, _FENCE = FLOWN, OBSTACLE, SERIES[1], LIMIT, SERIES[2]
+_ROUTE, _KNOWN, _UNKNOWN, _LEAST, _FENCE = FLOWN, OBSTACLE, SERIES[1], LIMIT, SERIES[2]
 _SPACING = 0.1
-"""m along the route, between places at which the narrowest gap is looked for."""
+"""m along the route, between places at which the clearance is looked at."""
 _SHOWN = 40
 """Legs whose ends are numbered."""
 _NAMED = 30
-"""Obstacles whose names are written; of more, none but the narrowest gap's."""
+"""Obstacles whose names are written; of more, none but that of the least clearance."""
 _BESIDE = 4.0
 """m about the route and what stands."""
 
@@ -60,7 +60,7 @@ def draw_map(mission: Mission) -> Figure:
         _draw_obstacle(ax, obstacle, named=len(mission.obstacles) <= _NAMED)
     ax.plot(places[:, 1], places[:, 0], color=_ROUTE, lw=1.2, label="route of the payload")
     _number_legs(ax, mission)
-    if (gap := narrowest_gap(mission, places)) is not None:
+    if (gap := least_clearance(mission, places)) is not None:
         _mark(ax, *gap)
     drawn = np.vstack([places[:, :2], *(np.array([o.position[:2]]) for o in mission.obstacles), *mission.boundary])
     low, high = drawn.min(axis=0) - _BESIDE, drawn.max(axis=0) + _BESIDE
@@ -82,7 +82,7 @@ def swept_area(places: Array, formation: BoundingCylinder) -> shapely.Geometry:
     return shapely.union_all(cores).buffer(min(formation.rounding, formation.radius))
 
 
-def narrowest_gap(mission: Mission, places: Array) -> tuple[Array, Obstacle, float] | None:
+def least_clearance(mission: Mission, places: Array) -> tuple[Array, Obstacle, float] | None:
     """Return where on the lines between ``places`` (P, 3) the formation at rest is nearest to what stands on the map.
 
     The place (3,) (NED, m), the obstacle and the clearance (m), as the preflight check measures it, negative where they
@@ -145,11 +145,11 @@ def _number_legs(ax: Axes, mission: Mission) -> None:
 def _mark(ax: Axes, place: Array, obstacle: Obstacle, clearance: float) -> None:
     outline = shapely.Polygon(obstacle.shape.plan_view.outline() + np.array(obstacle.position[:2]))
     line = shapely.get_coordinates(shapely.shortest_line(shapely.Point(place[:2]), outline))
-    ax.plot(line[:, 1], line[:, 0], color=_NARROWEST, lw=2.0, label="narrowest")
+    ax.plot(line[:, 1], line[:, 0], color=_LEAST, lw=2.0, label="least clearance")
     there = f"to {obstacle.name}, {-place[2]:.1f} m high"
     ax.annotate(
         f"{clearance:.2f} m {there}" if clearance > 0.0 else f"leads in{there}",
         line[-1, ::-1], xytext=(12, -16),
-        textcoords="offset points", color=_NARROWEST, weight="bold", fontsize=9,
+        textcoords="offset points", color=_LEAST, weight="bold", fontsize=9,
         bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1.5},
     )  # fmt: skip

@@ -9,7 +9,7 @@ from mission_files import MISSIONS
 from gcs.app.cli import main
 from gcs.errors import UnusableInput
 from gcs.mission.read import read_mission
-from gcs.view.mission_map import draw_map, narrowest_gap, swept_area, write_map
+from gcs.view.mission_map import draw_map, least_clearance, swept_area, write_map
 from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 
 COURSE = """
@@ -46,17 +46,17 @@ def test_swept_area_is_that_of_the_bounds_along_each_line():
     assert there_and_back.equals_exact(straight, 1e-9) or there_and_back.symmetric_difference(straight).area < 1e-6
 
 
-def test_narrowest_gap_is_measured_from_the_bounds_to_what_stands_on_the_map(tmp_path):
+def test_least_clearance_is_measured_from_the_bounds_to_what_stands_on_the_map(tmp_path):
     mission = course(tmp_path)
     formation = BoundingCylinder.of(mission.system.parameters())
     places = np.array([[0.0, 0.0, -0.3], [0.0, 0.0, -5.0], [20.0, 0.0, -5.0]])
-    place, obstacle, clearance = narrowest_gap(mission, places)
+    place, obstacle, clearance = least_clearance(mission, places)
     assert obstacle.name == "mast" and place[0] == pytest.approx(8.0, abs=formation.core[0] + 0.5 + 0.2)
     assert clearance == pytest.approx(3.0 - 0.5 - formation.core[1] - formation.rounding, abs=0.01)
-    assert narrowest_gap(course(tmp_path, known="false"), places) is None
+    assert least_clearance(course(tmp_path, known="false"), places) is None
 
 
-def test_map_shows_legs_fence_obstacles_and_the_narrowest_gap(tmp_path):
+def test_map_shows_legs_fence_obstacles_and_the_least_clearance(tmp_path):
     (ax,) = draw_map(course(tmp_path)).axes
     texts = [text.get_text() for text in ax.texts]
     assert {"1", "2, 4, 5", "3", "mast"} <= set(texts) or {"1", "2, 4", "3", "mast"} <= set(texts), texts
