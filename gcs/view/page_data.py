@@ -106,7 +106,7 @@ class PageData:
             "meta": self._meta(),
             "channels": self._channels,
             "events": events(run),
-            "obstacles": [self._obstacle(track) for track in run.obstacles],
+            "obstacles": self._obstacles(),
             "tracks": self._tracks(),
             "standing": standing(run),
             "clearance": None if nearest is None else nearest.header,
@@ -241,13 +241,15 @@ class PageData:
             )  # fmt: skip
         return found
 
-    def _obstacle(self, track: ObstacleTrack) -> dict[str, Any]:
+    def _obstacles(self) -> list[dict[str, Any]]:
+        of_mission = (self._run.manifest.get("mission") or {}).get("obstacles", ())
+        known = {obstacle["name"]: obstacle.get("known", True) for obstacle in of_mission}
+        return [self._obstacle(track, known.get(track.name, True)) for track in self._run.obstacles]
+
+    def _obstacle(self, track: ObstacleTrack, known: bool) -> dict[str, Any]:
         shape = track.shape
-        known = {
-            o["name"]: o.get("known", True) for o in (self._run.manifest.get("mission") or {}).get("obstacles", ())
-        }
         found: dict[str, Any] = {
-            "name": track.name, "kind": shape.kind, "known": known.get(track.name, True),
+            "name": track.name, "kind": shape.kind, "known": known,
             "quaternion": shape.quaternion, "size": list(shape.columns.size), "radius": shape.columns.radius,
             "channel": None, "position": None,
         }  # fmt: skip
