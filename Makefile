@@ -17,7 +17,7 @@ export OPENBLAS_NUM_THREADS := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help install fly test test-fast test-long test-lowest test-numerics release golden golden-renew page
-.PHONY: claims claims-all claims-write fault-tables anew benchmark benchmark-campaign benchmark-check docs clean
+.PHONY: claims claims-all claims-write fault-tables anew benchmark benchmark-campaign benchmark-check benchmark-view docs clean
 
 help:
 	@echo "make fly          fly $(MISSION) with a simulated swarm (MISSION=... for another one)"
@@ -36,6 +36,7 @@ help:
 	@echo "make benchmark    the speed of flights relative to gym-pybullet-drones; adds to the history"
 	@echo "make benchmark-check  compare the CPU cost of flights with that of the commit BASE ($(BASE))"
 	@echo "make benchmark-campaign  throughput of parallel flights against a single one's"
+	@echo "make benchmark-view   CPU cost of a flight with its live view against that without"
 	@echo "make docs         write docs/settings.md, docs/failsafes.md and NOTICE from what they are about"
 	@echo "make page         bundle the scripts of the report page anew (needs node and npm)"
 	@echo "make install      only install, into $(VENV)"
@@ -101,6 +102,9 @@ benchmark: $(COMPILED)
 
 benchmark-campaign: $(COMPILED)
 	$(VENV)/bin/python tests/benchmarks/campaign.py
+
+benchmark-view: $(COMPILED)
+	$(VENV)/bin/python tests/benchmarks/view.py
 
 benchmark-check: $(COMPILED)
 	$(VENV)/bin/python tests/benchmarks/check.py --base $(BASE)

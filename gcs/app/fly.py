@@ -20,7 +20,8 @@ from gcs.app.logs import LOG
 from gcs.drivers.connection import Connection, LockstepConnection
 from gcs.drivers.forked_program import ForkedProgram
 from gcs.drivers.interrupt import Interrupt
-from gcs.drivers.lockstep import is_refused, run_in_lockstep
+from gcs.drivers.live_view import LiveView
+from gcs.drivers.lockstep import Pace, is_refused, run_in_lockstep
 from gcs.drivers.realtime import run_in_real_time
 from gcs.drivers.simulator import PROGRAM, Simulator
 from gcs.errors import GcsError, UnusableInput
@@ -103,7 +104,7 @@ def fly(
     check_curve(mission)
     _check_clock(options)
     before = cpu_time()
-    with Interrupt() as interrupt, ExitStack() as resources:
+    with Interrupt() as interrupt, ExitStack() as viewing, ExitStack() as resources:
         folder = resources.enter_context(NewRunFolder(mission.name, options.run_dir))
         run_dir, started = folder.path, datetime.now(UTC)
         write_manifest(
@@ -111,6 +112,9 @@ def fly(
         )
         if others := differences():
             LOG.warning(others)
+        if options.view:
+            view = viewing.enter_context(LiveView(run_dir))
+            LOG.warning("live view: %s", view.url)
         if vehicle_sim is None and options.connect is None:
             vehicle_sim = resources.enter_context(ForkedProgram(PROGRAM))
         connection = resources.enter_context(closing(Connection(_local_address(options.urls))))
@@ -144,9 +148,11 @@ def fly(
                 clock = _clock_address(options, simulator)
                 in_lockstep = resources.enter_context(closing(LockstepConnection(connection, clock)))
                 hint = "" if simulator is not None else "; for a swarm in real time add --realtime"
+                pace = Pace(options.pace) if options.view else None
                 run_in_lockstep(
-                    station, in_lockstep, clock, interrupt, settings, progress=update, end_reason=ended, hint=hint
-                )
+                    station, in_lockstep, clock, interrupt, settings,
+                    pace=pace, progress=update, end_reason=ended, hint=hint,
+                )  # fmt: skip
         except KeyboardInterrupt:
             flight = station.flight
             reason = "interrupted twice: the vehicles land autonomously"

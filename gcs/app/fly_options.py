@@ -30,7 +30,9 @@ class FlyOptions:
     run_dir: Path | None = None
     realtime: bool = False
     speed: float | None = None
-    """Simulated seconds per second of wall time; None: 1 in real time, in lockstep as many as can be."""
+    """Simulated seconds per second of wall time; None: 1 in real time or with a view, else as many as can be."""
+    view: bool = False
+    """Show it in a browser while it flies."""
     controller: str = "idc"
     connect: tuple[ConnectionUrl, ...] | None = None
     """URLs of a running swarm, empty: the ports of this machine where it listens by default; None: one is started."""
@@ -42,7 +44,7 @@ class FlyOptions:
 
     @property
     def pace(self) -> float:
-        """Simulated seconds per second of wall time in real time."""
+        """Simulated seconds per second of wall time, in real time or with a view."""
         return 1.0 if self.speed is None else self.speed
 
     @property
@@ -71,8 +73,8 @@ class FlyOptions:
 def prepare(options: FlyOptions) -> Mission:
     """Read the mission as it will be flown. Raises :class:`UnusableInput`."""
     _check_urls(options)
-    if options.speed is not None and not options.realtime:
-        raise UnusableInput(f"--speed {options.speed:g}: lockstep is as fast as it can be; add --realtime")
+    if options.speed is not None and not (options.realtime or options.view):
+        raise UnusableInput(f"--speed {options.speed:g}: lockstep is as fast as it can be; add --realtime or --view")
     check_run_folder(options.run_dir)
     vehicles = options.vehicles
     if len(options.urls) > 1:

@@ -1,6 +1,7 @@
 """Lockstep: the world's clock is the ground's clock (see :mod:`gcs.mavlink.lockstep`)."""
 
 import socket
+import time
 from collections.abc import Callable
 
 from gcs.config.flight_settings import DriverSettings
@@ -14,6 +15,28 @@ from gcs.mavlink.lockstep import Done, Tick, decode_tick, next_call_us
 _REFUSAL_TIME = 0.2  # s of wall time in which a closed port is reported
 
 
+class Pace:
+    """Holds the world's clock back to ``speed`` simulated seconds a wall second; delays are not made up for."""
+
+    def __init__(
+        self,
+        speed: float,
+        clock: Callable[[], float] = time.monotonic,
+        sleep: Callable[[float], None] = time.sleep,
+    ) -> None:
+        self._speed, self._clock, self._sleep = speed, clock, sleep
+        self._offset = -clock()  # of simulated from wall time (s of wall time)
+
+    def hold(self, now: float) -> None:
+        """Wait until the simulated time ``now`` (s) is due."""
+        due = now / self._speed
+        early = due - (self._clock() + self._offset)
+        if early > 0.0:
+            self._sleep(early)
+        else:
+            self._offset += early
+
+
 def run_in_lockstep(
     station: GroundStation,
     connection: LockstepConnection,
@@ -21,11 +44,12 @@ def run_in_lockstep(
     interrupt: Interrupt,
     settings: DriverSettings,
     *,
+    pace: Pace | None = None,
     progress: Callable[[], None] = lambda: None,
     end_reason: Callable[[], str | None] = lambda: None,
     hint: str = "",
 ) -> None:
-    """Run ``station`` until its flight has ended, one exchange with the world at a time.
+    """Run ``station`` until its flight has ended, one exchange with the world at a time, no faster than ``pace``.
 
     ``end_reason`` returns why the world has ended, None while it runs; ``hint`` what to do where none answers.
     """
@@ -65,6 +89,8 @@ def run_in_lockstep(
             connection.send(datagram, address)
         station.sent()
         progress()
+        if pace is not None:
+            pace.hold(now)
         next_us = next_call_us(station.next_timer(), tick.time_us)
         connection.send(Done(tick.serial, next_us, station.ended).encode(), clock_address)
     if joined:

@@ -25,6 +25,11 @@ def read_table(path: Path | str) -> Table:
     """
     path = Path(path)
     header, _, rows = _text(path).rpartition("\n")[0].partition("\n")
+    return parse_table(path, header, rows)
+
+
+def parse_table(path: Path, header: str, rows: str) -> Table:
+    """Return the table of these lines of ``path``, as :func:`read_table` does, which names what it raises."""
     needed = COLUMNS.get(path.name, ())
     columns = header.split(",") if header else [*needed]
     if path.name == TRUTH:

@@ -180,10 +180,11 @@ def position_error(run: RunData) -> tuple[Array, Array]:
     return time, run.payload_position[inside] - np.column_stack(wanted)
 
 
-def read_run(run_dir: Path | str) -> RunData:
+def read_run(run_dir: Path | str, tables: Mapping[str, Table] | None = None) -> RunData:
     """Read a run folder; files and rows that a cut-off flight did not write are just absent.
 
-    T is 0 where nothing was recorded. Raises :class:`UnusableInput` for a folder that is not a run and for a
+    ``tables`` are those of the folder that have been read already, or some of their rows. T is 0 where nothing was
+    recorded. Raises :class:`UnusableInput` for a folder that is not a run and for a
     damaged file.
     """
     folder = Path(run_dir)
@@ -191,7 +192,7 @@ def read_run(run_dir: Path | str) -> RunData:
         raise UnusableInput(f"{folder}: is not a folder")
     if not any((folder / name).exists() for name in (MANIFEST, TRUTH, ESTIMATE)):
         raise UnusableInput(f"{folder}: is not a run folder: it holds no {MANIFEST}, {TRUTH} or {ESTIMATE}")
-    tables = RunTables(folder)
+    tables = RunTables(folder) if tables is None else tables
     # A truth of no rows (its world never ran) must not hide what the ground recorded.
     from_truth = len(tables[TRUTH]) > 0
     state = tables[TRUTH if from_truth else ESTIMATE]

@@ -88,27 +88,32 @@ class Blob:
 
 
 class PageData:
-    """The header and the blob of one run."""
+    """The header and the blob of one run.
 
-    def __init__(self, run: RunData) -> None:
+    ``so_far``: the whole run up to now, of which ``run`` has the rows that are new; None: the run is over.
+    """
+
+    def __init__(self, run: RunData, so_far: RunData | None = None) -> None:
         self._run, self._blob = run, Blob()
+        self._so_far, self._is_over = so_far or run, so_far is None
         self._channels: dict[str, Any] = {}
         self._times: dict[int, dict[str, Any]] = {}
-        dense = len(run.time) > 1 and run.time[-1] - run.time[0] > LONG
-        rate = (len(run.time) - 1) / (run.time[-1] - run.time[0]) if dense else 0.0
+        lasts = run.time[-1] - run.time[0] if len(run.time) > 1 else 0.0
+        dense = lasts > (LONG if self._is_over else 0.0)
+        rate = (len(run.time) - 1) / lasts if dense else 0.0
         self._rows = slice(None, None, max(round(rate / RATE_LONG), 1))
         self._motion()
         self._tables()
         self._clearances()
         self._innovations()
-        nearest = least_clearance(run)
+        nearest = least_clearance(run) if self._is_over else None
         self.header = {
             "meta": self._meta(),
             "channels": self._channels,
-            "events": events(run),
+            "events": events(self._so_far, is_over=self._is_over),
             "obstacles": self._obstacles(),
             "tracks": self._tracks(),
-            "standing": standing(run),
+            "standing": standing(self._so_far),
             "clearance": None if nearest is None else nearest.header,
         }
 
@@ -187,6 +192,8 @@ class PageData:
         if links:
             self._add("truth.tension", np.ascontiguousarray(forces["time_s"]), names, "N", stack(forces, links))
         self._horizons(self._run.tables[HORIZON])
+        if not self._is_over:  # the telemetry log has no rows, to read on from the last
+            return
         middles, systems, figures = link_figures(self._run.folder / "telemetry.tlog")
         for name, unit in (("loss", "%"), ("latency", "ms"), ("rate", "1/s")):
             if len(middles):
@@ -212,6 +219,8 @@ class PageData:
         self._add("clearance.nearest", self._time, ["nearest"], "m", run.clearance[self._rows, None])
         barriers = run.barriers
         if len(barriers) > _SERIES_MAX:
+            if not self._is_over:  # which come nearest is not yet known
+                return
             coarse = slice(None, None, self._rows.step * 25)
             order = np.argsort(np.nanmin(run.clearances(coarse), axis=0, initial=np.inf))
             barriers = tuple(barriers[i] for i in sorted(order[:_SERIES_MAX].tolist()))
@@ -227,13 +236,13 @@ class PageData:
 
     def _tracks(self) -> list[dict[str, Any]]:
         """Return the obstacles that the ground has tracked; the size is the last."""
-        table = self._run.tables["obstacles_estimate.csv"]
+        table, new = (run.tables["obstacles_estimate.csv"] for run in (self._so_far, self._run))
         found = []
         for name in dict.fromkeys(table["name"] if len(table) else ()):
-            rows = table[table["name"] == name]
+            rows = new[new["name"] == name]
             channel = f"track.{name}"
             self._add(channel, np.ascontiguousarray(rows["time_s"]), _NED, "m", stack(rows, _XYZ))
-            last = rows[-1]
+            last = table[table["name"] == name][-1]
             size = [float(last[f"size_{axis}_m"]) for axis in "xyz"]
             found.append(
                 {"name": name, "kind": last["kind"], "radius": float(last["radius_m"]), "size": size,
@@ -255,7 +264,7 @@ class PageData:
         }  # fmt: skip
         if isinstance(shape, OrientedShape):
             found |= {"corners": shape.corners.tolist(), "rounding": shape.rounding}
-        if track.position.strides[0] == 0 or not np.ptp(track.position, axis=0).any():  # it stands
+        if track.position.strides[0] == 0:  # it stands
             found["position"] = track.position[0].tolist() if len(track.position) else [0.0, 0.0, 0.0]
         else:
             found["channel"] = f"obstacle.{track.name}"
@@ -281,8 +290,8 @@ class PageData:
             "start": run.manifest.get("start"),
             "source": run.source,
             "command": command(run.manifest.get("command") or ()),
-            "outcome": run.summary.get("outcome", "cut off"),
-            "reason": run.summary.get("reason", "the records end before the flight does"),
+            "outcome": run.summary.get("outcome", "cut off") if self._is_over else "in flight",
+            "reason": run.summary.get("reason", "the records end before the flight does") if self._is_over else "",
             "summary": run.summary,
             "begin": run.time[0] if len(run.time) else 0.0,
             "end": run.time[-1] if len(run.time) else 0.0,

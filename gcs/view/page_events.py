@@ -24,9 +24,11 @@ def event(kind: str, start: float, end: float | None, source: str, text: str, se
     return {"kind": kind, "start": start, "end": end, "source": source, "text": text, "severity": severity}
 
 
-def events(run: RunData) -> list[Event]:
-    """Return all events of a run, in the order of time."""
-    found = [*phases(run), *modes(run), *faults(run), *alarms(run), *isolations(run), *waypoints(run)]
+def events(run: RunData, *, is_over: bool = True) -> list[Event]:
+    """Return all events of a run, in the order of time; of one that is not over without waypoints, still ahead."""
+    found = [*phases(run), *modes(run), *faults(run), *alarms(run), *isolations(run)]
+    if is_over:
+        found += waypoints(run)
     return sorted(found, key=lambda each: each["start"])
 
 

@@ -8,7 +8,7 @@ from scripted_station import VEHICLE, ScriptedStation
 
 from gcs.config.flight_settings import DriverSettings
 from gcs.drivers.connection import Connection, LockstepConnection
-from gcs.drivers.lockstep import is_refused, run_in_lockstep
+from gcs.drivers.lockstep import Pace, is_refused, run_in_lockstep
 from gcs.flight.failsafe import Failsafe
 from gcs.mavlink.lockstep import Done, Tick, decode_done
 
@@ -140,3 +140,17 @@ def test_closed_port_of_a_clock_is_refused_and_an_open_one_is_not():
         assert not is_refused(clock_address)
         assert [decode_done(datagram) for datagram, _ in world.receive()] == [Done(0, None, leaving=True)]
     assert is_refused(clock_address)
+
+
+def test_pace_waits_for_what_is_early_and_does_not_make_up_for_what_is_late():
+    wall, waits = [100.0], []
+
+    def sleep(duration):
+        waits.append(duration)
+        wall[0] += duration
+
+    pace = Pace(2.0, clock=lambda: wall[0], sleep=sleep)
+    for simulated, spent in ((0.5, 0.05), (1.0, 0.05), (1.5, 3.0), (2.0, 0.05)):
+        wall[0] += spent
+        pace.hold(simulated)
+    assert waits == pytest.approx([0.2, 0.2, 0.2]) and wall[0] == pytest.approx(103.75)

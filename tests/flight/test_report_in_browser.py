@@ -6,6 +6,7 @@ import shutil
 import numpy as np
 import pytest
 from browser import Browser
+from growing_run import served, write_until
 from recorded_run import BALL, write_plan, write_reference, write_steps, write_truth
 
 from gcs.record.run_data import read_run
@@ -273,4 +274,34 @@ def test_matrix_of_a_campaign_shows_the_flights_of_a_cell(browser, tmp_path):
     assert browser.value("[...document.querySelectorAll('#flights tbody tr')].map((r) => r.cells[0].innerText)") == [
         "near"
     ]
+    assert browser.errors == []
+
+
+def test_live_page_goes_along_with_the_flight_until_it_is_over(browser, folder, tmp_path):
+    for name in ("manifest.json", "obstacles.csv", "alarms.csv", "phases.csv"):
+        shutil.copy(folder / name, tmp_path)
+    write_until(tmp_path, folder, 0.3)
+    with served(tmp_path) as (port, is_over):
+        browser.open(f"http://127.0.0.1:{port}/")
+        first = browser.value("report.clock.end")
+        assert "in flight" in browser.value("document.querySelector('h1').innerText")
+        write_until(tmp_path, folder, 0.8)
+        # It goes on by itself, and what is drawn goes along.
+        browser.wait(f"report.clock.end > {first} + 3 && report.clock.time > report.clock.end - 0.05")
+        browser.value("report.plots.element.scrollIntoView()")
+        browser.wait("report.plots.shown[0].plot.data[0].at(-1) === report.clock.end")
+        assert browser.value("report.clock.following && report.scene.trail.times.at(-1) > 7")
+        # Paused it stays where it is, while the flight goes on; the last key follows again.
+        browser.press(" ")
+        paused = browser.value("report.clock.time")
+        write_until(tmp_path, folder, 1.0)
+        browser.wait("report.clock.end > 9.9")
+        assert browser.value("report.clock.time") == paused
+        browser.press("End")
+        assert browser.value("report.clock.time") == pytest.approx(10.0)
+        shutil.copy(folder / "summary.json", tmp_path)
+        is_over.set()
+        browser.wait("report.run.meta.outcome === 'completed'")
+        assert browser.value("report.run.clearance.obstacle") == "ball"
+        assert "at least" in browser.value("document.body.innerText")
     assert browser.errors == []

@@ -89,11 +89,11 @@ class Browser:
                 self.errors.append(details["entry"]["text"])
         return message
 
-    def open(self, path, width=1280, height=800):
-        """Open a file and wait until its report is shown."""
+    def open(self, page, width=1280, height=800):
+        """Open a file, or an address, and wait until its report is shown."""
         self.errors.clear()
         self.size(width, height)
-        self.call("Page.navigate", url=path.resolve().as_uri())
+        self.call("Page.navigate", url=page if isinstance(page, str) else page.resolve().as_uri())
         self.wait("window.report !== undefined || document.querySelector('.failed') !== null")
 
     def size(self, width, height):

@@ -69,6 +69,7 @@ def parse(argv: list[str] | None) -> argparse.Namespace:
     )  # fmt: skip
     add("--speed", type=SPEED, default=None, metavar="X",
         help="real time times X (default: 1)")  # fmt: skip
+    add("--view", action="store_true", help="show the swarm in a browser: prints the address")
     add("--gui", action="store_true", help="show the world in a window")
     add("--with-parent", action="store_true", help=argparse.SUPPRESS)
     add_log_arguments(parser)

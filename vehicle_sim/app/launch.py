@@ -6,12 +6,15 @@ import contextlib
 import dataclasses
 import os
 import sys
+import tempfile
 from argparse import Namespace
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gcs.config import SystemConfig, read_system
 from gcs.config.overrides import with_settings
+from gcs.drivers.live_view import LiveView
 from gcs.mavlink.address import THIS_MACHINE, VEHICLE_PORT
 from gcs.mission.faults import check_faults_of
 from gcs.mission.model import Mission
@@ -88,8 +91,13 @@ def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack
     sockets = started.enter_context(
         SwarmSockets(ports.listening_host, options.base_port, len(swarm.vehicles), options.lockstep)
     )
+    if options.view and options.run_dir is None:
+        options.run_dir = Path(started.enter_context(tempfile.TemporaryDirectory(prefix="vehicle-sim-")), "run")
     if options.run_dir is not None:
+        view = started.enter_context(contextlib.ExitStack())  # ends when the records are closed
         truth = _truth_log(options, arguments, seed, mission, config)
+        if options.view:
+            print(f"live view: {view.enter_context(LiveView(options.run_dir)).url}", file=sys.stderr, flush=True)
         started.callback(lambda: incomplete.found.extend(truth.incomplete.found))
         swarm.record(truth)
         started.callback(truth.close)

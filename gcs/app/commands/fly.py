@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("mission", nargs="?", metavar="MISSION", help="mission file, or a name of gcs missions")
     add("--realtime", action="store_true", help="run on the wall clock instead of in lockstep")
     add("--speed", type=SPEED, metavar="X",
-        help="simulated seconds per second of wall time, with --realtime (default: 1)")  # fmt: skip
+        help="simulated seconds per second of wall time, with --realtime or --view (default: 1)")  # fmt: skip
     add("--controller", choices=CONTROLLERS, default="idc",
         help="idc: tracking with obstacle avoidance (default); mpc: tracking only; paper: the paper's own filter",
     )  # fmt: skip
@@ -47,6 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         f"udp://{THIS_MACHINE}:{VEHICLE_PORT} and on); a single one of a router to all of them; or udpin://HOST:PORT "
         f"to which the vehicles send (vehicle-sim: udpin://{THIS_MACHINE}:{GROUND_PORT})",
     )  # fmt: skip
+    add("--view", action="store_true", help="show the flight in a browser while it goes on: prints the address")
     add("--json", action="store_true", help="print the summary as JSON instead of a table")
     add("--no-pictures", action="store_true", help="write neither report.html nor poster.png; gcs report does it later")
 
@@ -70,6 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
         run_dir=arguments.run_dir,
         realtime=arguments.realtime,
         speed=arguments.speed,
+        view=arguments.view,
         controller=arguments.controller,
         connect=None if connect is None else tuple(parse_url(url) for url in connect),
     )

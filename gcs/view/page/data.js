@@ -27,6 +27,18 @@ export class Channel {
     this.series = series;
     this.isQuaternion = columns.join('') === 'wxyz';
     this.last = 0;
+    /** Whether the arrays are in memory of its own, with room for further rows. */
+    this.grows = false;
+  }
+
+  /** Append the rows of the same record that have come since. @param {Channel} later */
+  append(later) {
+    if (later.series.length !== this.series.length) return;
+    const known = this.grows;
+    this.t = joined(this.t, later.t, known);
+    this.series = this.series.map((values, j) => joined(values, later.series[j], known));
+    this.shape = [this.t.length, ...this.shape.slice(1)];
+    this.grows = true;
   }
 
   /** The number of the last row that is not after `time`; the first one before all. @param {number} time */
@@ -77,6 +89,25 @@ export class Channel {
     if (this.isQuaternion) return slerp(a, b, share);
     return a.map((value, j) => (Number.isNaN(b[j]) ? value : value + share * (b[j] - value)));
   }
+}
+
+/**
+ * Two arrays, one after the other: in the memory of the first where it has room, otherwise in new memory, with room.
+ * @template {Float32Array|Float64Array} T
+ * @param {T} first @param {T} second @param {boolean} hasRoom whether what follows the first in its memory is free
+ * @returns {T}
+ */
+function joined(first, second, hasRoom) {
+  const length = first.length + second.length;
+  const Kind = /** @type {any} */ (first.constructor);
+  let found = first;
+  if (!hasRoom || first.byteOffset + length * Kind.BYTES_PER_ELEMENT > first.buffer.byteLength) {
+    found = new Kind(2 * length);
+    found.set(first);
+  }
+  found = new Kind(found.buffer, found.byteOffset, length);
+  found.set(second, first.length);
+  return found;
 }
 
 /** @param {number[]} a @param {number[]} b @param {number} share @returns {number[]} */
@@ -149,6 +180,31 @@ export class Run {
     return found;
   }
 
+  /**
+   * Take what has come to be on record since.
+   * @param {Run} later the same run, with the new rows alone
+   * @returns {boolean} whether there are records of another kind
+   */
+  extend(later) {
+    let isOther = false;
+    for (const name of Object.keys(later.header.channels)) {
+      const found = /** @type {Channel} */ (later.channel(name));
+      const own = this.channel(name);
+      if (own) own.append(found);
+      else {
+        this.header.channels[name] = later.header.channels[name];
+        this.channels.set(name, found);
+        isOther ||= !name.startsWith('track.');
+      }
+    }
+    Object.assign(this.meta, later.meta, { begin: this.meta.begin });
+    this.events = later.events;
+    this.tracks = later.tracks;
+    this.standing = later.standing;
+    if (isOther) this.obstacles = later.obstacles;
+    return isOther;
+  }
+
   /** What was flown, by the truth or, where there is none, the estimate: `position`, `attitude`, `velocity`, `rates`. */
   flown(part) {
     return this.channel(`${this.meta.source}.payload.${part}`);
@@ -215,10 +271,15 @@ export async function decode(document) {
   const headers = [...document.querySelectorAll('script.run-header')];
   const blobs = [...document.querySelectorAll('script.run-blob')];
   return Promise.all(
-    headers.map(async (header, k) => {
-      const blob = await inflate(blobs[k].textContent ?? '');
+    headers.map((header, k) => {
+      const text = blobs[k].textContent ?? '';
       blobs[k].textContent = '';
-      return new Run(JSON.parse(header.textContent ?? ''), blob);
+      return decoded(JSON.parse(header.textContent ?? ''), text);
     }),
   );
+}
+
+/** A run of its header and its blob. @param {any} header @param {string} blob @returns {Promise<Run>} */
+export async function decoded(header, blob) {
+  return new Run(header, await inflate(blob));
 }

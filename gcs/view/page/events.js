@@ -4,8 +4,11 @@ import { h } from './dom.js';
 
 const TITLES = { phase: 'phase', mode: 'mode', fault: 'fault', alarm: 'alarm', isolation: 'isolated', waypoint: 'waypoint' };
 
-/** @param {import('./data.js').Run} run @param {import('./clock.js').Clock} clock */
-export function eventList(run, clock) {
+/**
+ * @param {import('./data.js').Run} run @param {import('./clock.js').Clock} clock
+ * @param {AbortSignal} signal which ends its listening to the clock
+ */
+export function eventList(run, clock, signal) {
   const rows = run.events.map((event) => {
     const row = h(
       `tr.event.${event.kind}`,
@@ -25,7 +28,7 @@ export function eventList(run, clock) {
     rows[current]?.row.classList.remove('current');
     rows[now]?.row.classList.add('current');
     current = now;
-  });
+  }, signal);
   const head = ['time', 'kind', 'source', 'event'].map((text) => h('th', {}, text));
   return h(
     'section', { id: 'events' },

@@ -5,7 +5,7 @@ import { faults, happened, LIMITS, modes, position, safety, verdict } from './wo
 
 /** @typedef {import('./data.js').Run} Run */
 
-const MARKS = { good: '✓', warning: '!', bad: '✗' };
+const MARKS = { good: '✓', warning: '!', bad: '✗', live: '●' };
 
 /** @param {Run} run */
 export function title(run) {
@@ -51,6 +51,7 @@ function faultCard(run, clock) {
 }
 
 function limits(run) {
+  if (run.meta.outcome === 'in flight') return null; // they are judged at the end
   const entries = Object.entries(run.meta.summary.limits ?? {});
   if (!entries.length) return card('Limits', ['The mission has no limits on record.']);
   const rows = entries.map(([name, { value, limit, held }]) => {

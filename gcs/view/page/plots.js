@@ -22,7 +22,7 @@ export class Plots {
     this.run = run;
     this.clock = clock;
     this.ghost = ghost;
-    /** @type {{plot: any, figure: import('./figures.js').Figure, cursor: HTMLElement, visible: boolean}[]} */
+    /** @type {{plot: any, figure: import('./figures.js').Figure, cursor: HTMLElement, visible: boolean, isOld: boolean}[]} */
     this.shown = [];
     this.zooming = false;
     this.legendAt = -Infinity;
@@ -31,7 +31,8 @@ export class Plots {
         const found = this.shown.find(({ plot }) => plot.root.parentElement === entry.target);
         if (found) {
           found.visible = entry.isIntersecting;
-          if (found.visible) this.place(found, true);
+          if (found.visible && found.isOld) this.fill(found);
+          else if (found.visible) this.place(found, true);
         }
       }
     });
@@ -39,8 +40,42 @@ export class Plots {
     this.element = element;
     this.draw();
     clock.onChange(() => this.move());
-    new ResizeObserver(() => this.resize()).observe(element);
-    window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.draw());
+    this.sizes = new ResizeObserver(() => this.resize());
+    this.sizes.observe(element);
+    this.closing = new AbortController();
+    const dark = window.matchMedia('(prefers-color-scheme: dark)');
+    dark.addEventListener('change', () => this.draw(), { signal: this.closing.signal });
+  }
+
+  /** Show a run that has grown. */
+  refresh() {
+    this.groups = groups(this.run, this.ghost);
+    const figures = this.groups.flatMap((group) => group.figures);
+    const names = (/** @type {import('./figures.js').Figure} */ figure) => [figure.title, ...figure.series.map(({ label }) => label)].join();
+    if (figures.map(names).join() !== this.shown.map(({ figure }) => names(figure)).join()) {
+      this.draw();
+      return;
+    }
+    this.shown.forEach((found, k) => {
+      found.figure = figures[k];
+      if (found.visible) this.fill(found);
+      else found.isOld = true;
+    });
+  }
+
+  /** Give a plot the values of its figure. */
+  fill(found) {
+    found.isOld = false;
+    found.plot.setData(columns(found.figure));
+    this.place(found, true);
+  }
+
+  dispose() {
+    this.observer.disconnect();
+    this.sizes.disconnect();
+    this.closing.abort();
+    for (const { plot } of this.shown) plot.destroy();
+    this.shown = [];
   }
 
   draw() {
@@ -71,7 +106,6 @@ export class Plots {
     const limit = token('limit');
     const font = '12px system-ui, sans-serif';
     const axis = { stroke: token('muted'), font, grid: { stroke: token('line'), width: 0.5 }, ticks: { stroke: token('line'), width: 0.5 } };
-    const constant = (value) => Array.from(figure.t, () => value);
     const digits = figure.digits ?? 2;
     const options = {
       width: this.width(), height: HEIGHT,
@@ -96,7 +130,7 @@ export class Plots {
       ],
       bands: (figure.bands ?? []).map(({ low, high, color }) => ({ series: [high, low], fill: `${token(color)}40` })),
       hooks: {
-        drawClear: [(u) => this.background(u, figure)],
+        drawClear: [(u) => this.background(u, this.shown.find(({ plot }) => plot === u)?.figure ?? figure)],
         setSelect: [(u) => {
           if (u.select.width > 3) {
             this.zoom(u.posToVal(u.select.left, 'x'), u.posToVal(u.select.left + u.select.width, 'x'));
@@ -105,15 +139,14 @@ export class Plots {
         }],
       },
     };
-    const data = [Array.from(figure.t), ...figure.series.map(({ values }) => values), ...lines.map(({ value }) => constant(value))];
-    const plot = new uPlot(options, data, place);
+    const plot = new uPlot(options, columns(figure), place);
     const cursor = h('div.clock-cursor', {});
     plot.over.append(cursor);
     plot.over.addEventListener('click', (event) => {
       if (event.detail === 1) this.clock.set(plot.posToVal(event.offsetX, 'x'));
     });
     plot.over.addEventListener('dblclick', () => this.zoom(this.clock.begin, this.clock.end));
-    const found = { plot, figure, cursor, visible: false };
+    const found = { plot, figure, cursor, visible: false, isOld: false };
     this.shown.push(found);
     this.observer.observe(place);
   }
@@ -199,6 +232,11 @@ export class Plots {
       this.place(found, false);
     }
   }
+}
+
+/** What a plot shows: times, values, lines. @param {import('./figures.js').Figure} figure */
+function columns({ t, series, lines = [] }) {
+  return [Array.from(t), ...series.map(({ values }) => values), ...lines.map(({ value }) => Array.from(t, () => value))];
 }
 
 /** @returns {[number, number]} the range of the axis */

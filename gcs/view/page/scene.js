@@ -16,7 +16,7 @@ import { Labels } from './scene/labels.js';
 import { Obstacles } from './scene/obstacles.js';
 import { Palette } from './scene/palette.js';
 import { Panel } from './scene/panel.js';
-import { Plans, reference, Trail, waypoints } from './scene/paths.js';
+import { Plans, reference, referencePoints, Trail, waypoints } from './scene/paths.js';
 import { Readout } from './scene/readout.js';
 
 /** @typedef {import('./data.js').Run} Run */
@@ -33,8 +33,9 @@ export class Scene {
    * @param {Run} run
    * @param {import('./clock.js').Clock} clock
    * @param {Run} [ghost] another run, shown translucent at the same time
+   * @param {Cameras} [cameras] of the scene before, as which this one is seen
    */
-  constructor(element, run, clock, ghost) {
+  constructor(element, run, clock, ghost, cameras) {
     this.element = element;
     this.run = run;
     const canvas = h('canvas.scene-canvas', { role: 'img', 'aria-label': 'the flight in three dimensions; arrow keys turn it', tabIndex: 0 });
@@ -47,10 +48,12 @@ export class Scene {
     this.labels = new Labels(element);
     this.world = new World();
     this.time = clock.time;
+    this.live = clock.live;
     this.frame = 0;
     this.isStale = true;
     this.build(run, ghost);
     const box = extent(run);
+    this.box = box;
     this.fence = fence(run, -box.low[2], this.palette, this.labels);
     this.world.add(ground(run, box, this.palette, this.labels), this.fence);
     const size = (run.meta.link_length ?? 3) + 2;
@@ -66,18 +69,23 @@ export class Scene {
     const isLarge = Math.max(box.high[0] - box.low[0], box.high[1] - box.low[1]) > LARGE;
     this.update();
     this.resize();
-    this.setCamera(isLarge || run.clearance ? 'follow' : 'free');
+    this.setCamera(isLarge || run.clearance || this.live ? 'follow' : 'free');
+    if (cameras) {
+      this.cameras.resume(cameras);
+      this.panel.choose(cameras.kind);
+    }
     this.observer = new ResizeObserver(() => this.resize());
     this.observer.observe(element);
     this.palette.onChange(() => {
       this.world.background = this.palette.colour('sky');
       this.stale();
     });
+    this.closing = new AbortController();
     clock.onChange(() => {
       if (clock.time === this.time) return;
       this.time = clock.time;
       this.stale();
-    });
+    }, this.closing.signal);
   }
 
   /** @param {Run} run @param {Run} [ghost] */
@@ -118,7 +126,7 @@ export class Scene {
       this.formation.uavs.length > 0 && { name: 'formation hull', colour: 'flown', look: 'glass', shown: true, show: toggle(this.formation.hull) },
       this.estimate.position && { name: 'estimate', colour: 'estimate', look: 'glass', shown: true, show: toggle(this.estimate.mesh) },
       this.fence.children.length > 0 && { name: 'fence', colour: 'limit', look: 'glass', shown: true, show: toggle(this.fence) },
-      !this.detected.isEmpty && { name: 'ground’s map', colour: 'detected-wire', look: 'wire', shown: true, show: toggle(this.detected.group) },
+      (!this.detected.isEmpty || this.live) && { name: 'ground’s map', colour: 'detected-wire', look: 'wire', shown: true, show: toggle(this.detected.group) },
       run.has('reference.position') && { name: 'reference', colour: 'reference', look: 'thin', shown: true, show: toggle(this.reference) },
       run.has('horizon.plan') && { name: 'plan', colour: 'plan', look: 'line', shown: true, show: toggle(this.plans.plans[0].line) },
       run.has('horizon.stop') && { name: 'stop plan', colour: 'stop', look: 'dashed', shown: true, show: toggle(this.plans.plans[1].line) },
@@ -250,8 +258,24 @@ export class Scene {
     this.frame = 0;
   }
 
+  /** Whether what has been flown is beyond the ground that is shown, or beyond a scale. */
+  isOutgrown() {
+    const { low, high } = this.box;
+    const last = this.run.flown('position')?.series.map((values) => values[values.length - 1]) ?? [];
+    return [0, 1].some((k) => last[k] < low[k] || last[k] > high[k]) || this.trail.isOutgrown() || this.formation.isOutgrown();
+  }
+
+  /** Show a run that has grown, by rows of the records that it had. */
+  grow() {
+    this.detected.grow();
+    this.trail.grow();
+    this.reference.setPoints(referencePoints(this.run));
+    this.stale();
+  }
+
   dispose() {
     cancelAnimationFrame(this.frame);
+    this.closing.abort();
     this.observer.disconnect();
     window.removeEventListener('keydown', this.onKey, { capture: true });
     this.cameras.dispose();

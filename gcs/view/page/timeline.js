@@ -27,8 +27,8 @@ function icon(path) {
   return place;
 }
 
-/** @param {Run} run @param {Clock} clock */
-export function timeline(run, clock) {
+/** @param {Run} run @param {Clock} clock @param {AbortSignal} signal which ends its listening to the clock */
+export function timeline(run, clock, signal) {
   const { begin, end } = run.meta;
   const span = Math.max(end - begin, 1e-9);
   const share = (time) => `${(100 * (Math.min(Math.max(time, begin), end) - begin)) / span}%`;
@@ -65,7 +65,7 @@ export function timeline(run, clock) {
     'div.controls', {},
     button(icon(TO_START), 'to the start (home)', () => clock.set(begin)),
     play,
-    button(icon(TO_END), 'to the end (end)', () => clock.set(end)),
+    button(icon(TO_END), 'to the end (end)', () => clock.set(clock.end)),
     button('−', 'slower (-)', () => clock.changeSpeed(-1)),
     speed,
     button('+', 'faster (+)', () => clock.changeSpeed(1)),
@@ -73,12 +73,12 @@ export function timeline(run, clock) {
     h('span.keys', {}, 'keys: space, ← →, + −, home, end'),
   );
   clock.onChange(() => {
+    slider.max = String(clock.end);
     slider.value = String(clock.time);
     play.firstElementChild.firstElementChild.setAttribute('d', clock.playing ? PAUSE : PLAY);
     speed.textContent = `${clock.speed}×`;
-    shown.textContent = `${clock.time.toFixed(2)} s of ${end.toFixed(1)} s`;
-  });
-  keyboard(run, clock);
+    shown.textContent = `${clock.time.toFixed(2)} s of ${clock.end.toFixed(1)} s`;
+  }, signal);
   return h('section', { id: 'timeline' }, ...lanes, h('div.lane', {}, h('span.lane-name', {}, 'time'), slider), controls);
 }
 
@@ -88,10 +88,13 @@ export function describe(event) {
   return `${span}: ${event.source === 'team' ? '' : `${event.source}: `}${event.text}`;
 }
 
-/** Space: play, pause; arrows: a row of the record (with shift: 1 s); +, -: speed; home, end. */
-function keyboard(run, clock) {
-  const { t } = run.flown('position');
+/**
+ * Space: play, pause; arrows: a row of the record (with shift: 1 s); +, -: speed; home, end.
+ * @param {Run} run @param {Clock} clock @param {AbortSignal} signal which ends that
+ */
+export function keyboard(run, clock, signal) {
   const row = (steps) => {
+    const { t } = run.flown('position');
     let i = 0;
     let high = t.length;
     while (high - i > 1) {
@@ -127,6 +130,6 @@ function keyboard(run, clock) {
       event.stopPropagation();
       keys[event.key](event);
     },
-    { capture: true },
+    { capture: true, signal },
   );
 }

@@ -12,6 +12,7 @@ const OUTCOMES = {
   failed: 'A waypoint or the landing was missed, or the payload was not set down safely.',
   lost: 'The records end without the vehicles being known to be on the ground.',
   collided: 'Something touched: a vehicle or the payload came into contact.',
+  'in flight': 'The flight is going on.',
   'cut off': 'The records end before the flight does.',
 };
 
@@ -24,9 +25,10 @@ export const LIMITS = {
   arrival: ['distance from waypoints and landing place', 'm', '≤', 2],
 };
 
-/** Whether the flight is good, bad or in between. @param {Run} run @returns {'good'|'warning'|'bad'} */
+/** Whether the flight is good, bad or in between, or still going on. @param {Run} run @returns {'good'|'warning'|'bad'|'live'} */
 export function verdict(run) {
   const { outcome, summary } = run.meta;
+  if (outcome === 'in flight') return 'live';
   if (['failed', 'lost', 'collided'].includes(outcome)) return 'bad';
   const held = Object.values(summary.limits ?? {}).every((limit) => limit.held);
   return outcome === 'completed' && held ? 'good' : 'warning';
@@ -56,7 +58,11 @@ export function safety(run) {
     found.push(contacts === 0 ? 'Nothing touched.' : `There were ${contacts} contacts.`);
   }
   const least = run.clearance;
-  if (least) {
+  if (run.meta.outcome === 'in flight') {
+    const known = Array.from(run.channel('clearance.nearest')?.series[0] ?? []).filter(Number.isFinite);
+    if (known.length) found.push(`So far the formation's hull kept at least ${number(known.reduce((a, b) => Math.min(a, b)))} m from obstacles and fence.`);
+    else found.push(run.meta.source === 'truth' ? 'So far nothing is known that it must keep clear of.' : 'The distance from obstacles is known where the truth is on record.');
+  } else if (least) {
     const limit = summary.limits?.clearance;
     const bound = limit ? limit.limit : margin;
     const spare = least.min - bound;

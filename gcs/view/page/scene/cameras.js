@@ -128,6 +128,15 @@ export class Cameras {
     this.followed.copy(middle);
   }
 
+  /** Look as before, at a scene that has been made anew. @param {Cameras} before */
+  resume(before) {
+    this.set(before.kind);
+    if (before.kind !== 'follow') return;
+    const offset = before.perspective.position.clone().sub(before.orbit.target);
+    this.perspective.position.copy(this.orbit.target).add(offset);
+    this.orbit.update();
+  }
+
   /** The flight from above fills the picture. @param {number} aspect */
   frameAbove(aspect) {
     const width = 1.1 * Math.abs(this.corners[0].x - this.corners[1].x);

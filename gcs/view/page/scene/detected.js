@@ -24,19 +24,26 @@ export class Detected {
       this.group.add(mesh);
       return { mesh, channel: obstacle.channel ? run.channel(obstacle.channel) : null };
     });
-    this.tracks = run.tracks.map((/** @type {any} */ track) => {
-      const mesh = new LineSegments(frame(track), wire);
-      mesh.quaternion.copy(yawToScene(track.yaw));
-      mesh.visible = false;
-      this.group.add(mesh);
-      return { mesh, channel: run.channel(track.channel) };
-    });
-    this.standing = run.standing;
+    this.run = run;
+    /** @type {{mesh: LineSegments, channel: import('../data.js').Channel|null}[]} */
+    this.tracks = [];
     const box = shapeGeometry({ kind: 'box', radius: 0, size: [1, 1, 1] });
     this.box = { skin: box, frame: new EdgesGeometry(box) };
     this.looks = { skin, wire };
     /** @type {Group[]} as many as were shown at once so far */
     this.boxes = [];
+    this.grow();
+  }
+
+  /** Add the tracks that the run has had since. */
+  grow() {
+    for (const track of this.run.tracks.slice(this.tracks.length)) {
+      const mesh = new LineSegments(frame(track), this.looks.wire);
+      mesh.quaternion.copy(yawToScene(track.yaw));
+      mesh.visible = false;
+      this.group.add(mesh);
+      this.tracks.push({ mesh, channel: this.run.channel(track.channel) });
+    }
   }
 
   /** @param {number} time */
@@ -48,7 +55,7 @@ export class Detected {
       if (mesh.visible) toScene(channel.at(time), mesh.position);
     }
     let shown = 0;
-    for (const { start, end, position, size, yaw } of this.standing) {
+    for (const { start, end, position, size, yaw } of this.run.standing) {
       if (time < start || (end !== null && time >= end)) continue;
       const box = this.boxes[shown] ?? this.newBox();
       box.visible = true;
@@ -69,7 +76,7 @@ export class Detected {
   }
 
   get isEmpty() {
-    return this.known.length === 0 && this.tracks.length === 0 && this.standing.length === 0;
+    return this.known.length === 0 && this.tracks.length === 0 && this.run.standing.length === 0;
   }
 }
 

@@ -55,7 +55,7 @@ export class Formation {
       return link;
     });
     /** The scale of the links: about the force in the middle (N), so far as all but the jolts at touch-down go. */
-    this.force = this.tension ? spread(this.tension, 0.02) : { middle: 0, reach: 1 };
+    this.force = this.scale();
     this.rim = Array.from({ length: RIM }, (_, k) => {
       const angle = (2 * Math.PI * k) / RIM;
       return new Vector3(radius * Math.cos(angle), 0, radius * Math.sin(angle));
@@ -66,6 +66,16 @@ export class Formation {
     this.skin = new Mesh(new BufferGeometry(), palette.translucent('flown', 0.1));
     this.edges = new LineSegments(new BufferGeometry(), palette.hairline('flown', 0.55));
     this.hull.add(this.skin, this.edges);
+  }
+
+  scale() {
+    return this.tension ? spread(this.tension, 0.02) : { middle: 0, reach: 1 };
+  }
+
+  /** Whether the forces in the links have gone far from the scale. */
+  isOutgrown() {
+    const { middle, reach } = this.scale();
+    return Math.abs(middle - this.force.middle) + Math.abs(reach - this.force.reach) > 0.25 * this.force.reach;
   }
 
   /** @param {number} time */

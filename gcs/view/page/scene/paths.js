@@ -13,27 +13,51 @@ const PLAN_AGE = 0.5; // s after which a plan is no longer shown
 /** The mission's path. @param {Run} run @param {Palette} palette */
 export function reference(run, palette) {
   const line = new Polyline(palette.line('reference', 1.5));
-  const channel = run.channel('reference.position');
-  if (channel) line.setPoints(sampled(channel, 3000).map((i) => channel.row(i)));
+  line.setPoints(referencePoints(run));
   return line;
+}
+
+/** @param {Run} run */
+export function referencePoints(run) {
+  const channel = run.channel('reference.position');
+  return channel ? sampled(channel, 3000).map((i) => channel.row(i)) : [];
 }
 
 /** Where the payload has flown until a time, coloured by its speed. */
 export class Trail {
   /** @param {Run} run @param {Palette} palette @param {string} [colour] token, in place of the speed */
   constructor(run, palette, colour) {
+    this.run = run;
     this.palette = palette;
     this.line = new Polyline(colour ? palette.line(colour, 2) : palette.colouredLine(3.5));
-    const position = run.flown('position');
-    const velocity = run.flown('velocity');
+    this.read();
+    /** The end of the scale (m/s). */
+    this.fastest = this.scale();
+    if (colour) this.line.setPoints(this.points);
+    else palette.onChange(() => this.paint());
+  }
+
+  read() {
+    const position = this.run.flown('position');
+    const velocity = this.run.flown('velocity');
     const rows = position ? sampled(position, TRAIL_POINTS) : [];
     this.times = rows.map((i) => position.t[i]);
     this.points = rows.map((i) => position.row(i));
     this.speeds = rows.map((i) => (velocity ? Math.hypot(...velocity.row(i)) : 0));
-    /** The end of the scale (m/s). */
-    this.fastest = Math.max(0.5, Math.ceil(2 * Math.max(0, ...this.speeds.filter(Number.isFinite))) / 2);
-    if (colour) this.line.setPoints(this.points);
-    else palette.onChange(() => this.paint());
+  }
+
+  scale() {
+    return Math.max(0.5, Math.ceil(2 * Math.max(0, ...this.speeds.filter(Number.isFinite))) / 2);
+  }
+
+  isOutgrown() {
+    return this.scale() > this.fastest;
+  }
+
+  /** Show what has been flown since. */
+  grow() {
+    this.read();
+    this.paint();
   }
 
   paint() {
