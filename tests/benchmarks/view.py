@@ -56,8 +56,11 @@ def flown(mission, folder, view, speed):
         [*map(str, command)], cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
     ) as flight:
         if view:
-            address = re.search(r"http://\S+", flight.stderr.readline())[0]
-            with connect(address.replace("http", "ws"), max_size=None) as browser, suppress(ConnectionClosed):
+            address = re.search(r"http://\S+", flight.stderr.readline())[0].replace("http", "ws")
+            with (
+                connect(address, max_size=None, open_timeout=None) as browser,
+                suppress(ConnectionClosed),
+            ):
                 for _ in browser:
                     pass
         errors = flight.stderr.read()

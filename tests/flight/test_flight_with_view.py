@@ -58,8 +58,8 @@ def test_records_are_the_same_to_the_byte_when_a_browser_goes_and_another_stays(
         command, env=ENVIRONMENT, cwd=mission.parent, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
     ) as flight:
         address = address_of(flight.stderr)
-        with connect(address, max_size=None) as stays:
-            with connect(address, max_size=None) as goes:
+        with connect(address, max_size=None, open_timeout=PATIENCE) as stays:
+            with connect(address, max_size=None, open_timeout=PATIENCE) as goes:
                 goes.recv()
             *_, last = stays
         assert flight.wait(PATIENCE) == 0
@@ -69,7 +69,7 @@ def test_records_are_the_same_to_the_byte_when_a_browser_goes_and_another_stays(
 
 def test_simulator_by_itself_is_seen_without_a_run_folder():
     with swarm_process("--view", "--base-port", 0, "--sdk-port", 0, "--ground-port", 0) as swarm:
-        with connect(address_of(swarm.stderr), max_size=None) as browser:
+        with connect(address_of(swarm.stderr), max_size=None, open_timeout=PATIENCE) as browser:
             assert "truth.uav4.position" in browser.recv()
             swarm.terminate()
             *_, last = browser
