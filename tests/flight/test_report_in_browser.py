@@ -12,7 +12,7 @@ from recorded_run import BALL, write_plan, write_reference, write_steps, write_t
 from gcs.record.run_data import read_run
 from gcs.record.run_folder import open_run_folder, write_json
 from gcs.record.summary import summarise
-from gcs.record.tables import ALARM_COLUMNS, PHASE_COLUMNS, TableWriter
+from gcs.record.tables import ALARM_COLUMNS, HORIZON_COLUMNS, PHASE_COLUMNS, TableWriter
 from gcs.view.campaign_page import write_campaign
 from gcs.view.page import write_report
 
@@ -304,4 +304,31 @@ def test_live_page_goes_along_with_the_flight_until_it_is_over(browser, folder, 
         browser.wait("report.run.meta.outcome === 'completed'")
         assert browser.value("report.run.clearance.obstacle") == "ball"
         assert "at least" in browser.value("document.body.innerText")
+    assert browser.errors == []
+
+
+def test_paths_of_other_lengths_and_obstacles_that_come_later_are_added_to_what_is_shown(browser, folder, tmp_path):
+    """The first rows have a short path and one obstacle, the next ones a longer path and another obstacle."""
+    write_truth(tmp_path, rows=31, standing=[BALL])
+    with TableWriter(tmp_path / "horizon.csv", HORIZON_COLUMNS) as table:
+        table.write([1.0, "plan", 0, 1.0, 0.0, -5.0])
+    with served(tmp_path) as (port, _):
+        browser.open(f"http://127.0.0.1:{port}/")
+        with (tmp_path / "horizon.csv").open("a") as file:
+            file.write("3.5,plan,0,3.5,0.0,-5.0\n3.5,plan,3,3.8,0.0,-5.0\n")
+        whole = (folder / "truth.csv").read_bytes()
+        with (tmp_path / "truth.csv").open("ab") as file:
+            file.write(whole[file.tell() : len(whole) // 2])
+        browser.wait("report.run.channel('horizon.plan').t.length === 2")
+        assert browser.value("report.run.channel('horizon.plan').path(1.2)") == [[1, 0, -5]]
+        assert np.allclose(browser.value("report.run.channel('horizon.plan').path(3.6)"), [[3.5, 0, -5], [3.8, 0, -5]])
+        with (tmp_path / "obstacles.csv").open("a") as file:
+            file.write("4.0,other,sphere,20.0,0.0,-5.0,0.5,0,0,0,0\n")
+        with (tmp_path / "truth.csv").open("ab") as file:
+            file.write(whole[file.tell() :])
+        browser.wait("report.run.channel('clearance.each').columns.length === 2")
+        each = "report.run.channel('clearance.each')"
+        assert browser.value(f"{each}.columns") == ["ball", "other"]
+        assert browser.value(f"{each}.series.map((values) => values.length === {each}.t.length)") == [True, True]
+        assert browser.value(f"Number.isNaN({each}.series[1][0]) && {each}.series[1].at(-1) > 5")
     assert browser.errors == []

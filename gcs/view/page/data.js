@@ -31,12 +31,21 @@ export class Channel {
     this.grows = false;
   }
 
-  /** Append the rows of the same record that have come since. @param {Channel} later */
+  /**
+   * Append the rows of the same record that have come since. What has no column there, or none here, is not known.
+   * @param {Channel} later
+   */
   append(later) {
-    if (later.series.length !== this.series.length) return;
-    const known = this.grows;
-    this.t = joined(this.t, later.t, known);
-    this.series = this.series.map((values, j) => joined(values, later.series[j], known));
+    const named = this.shape.length < 3; // others are paths, of as many steps as there are
+    const added = named ? later.columns.filter((name) => !this.columns.includes(name)) : [];
+    const count = named ? this.columns.length + added.length : Math.max(this.series.length, later.series.length);
+    this.columns = [...this.columns, ...added];
+    const unknown = (/** @type {Channel} */ { t }) => new Float32Array(t.length).fill(NaN);
+    const before = Array.from({ length: count }, (_, j) => this.series[j] ?? unknown(this));
+    const after = before.map((_, j) => later.series[named ? later.columns.indexOf(this.columns[j]) : j] ?? unknown(later));
+    // What was added has no room yet.
+    this.series = before.map((values, j) => joined(values, after[j], this.grows && j < this.series.length));
+    this.t = joined(this.t, later.t, this.grows);
     this.shape = [this.t.length, ...this.shape.slice(1)];
     this.grows = true;
   }
