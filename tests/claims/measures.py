@@ -31,14 +31,12 @@ def geometry() -> dict[str, Any]:
     """Lengths (m) that follow from the default system."""
     system = SystemConfig()
     parameters, passages = system.parameters(), Passages(system)
-    sensors = float(np.hypot(*parameters.p[:, :2].T).max())
     margin, spare = system.avoidance.margin, system.guidance.navigator.spare
     radius = passages.formation.radius
     states = {n: len(LinearModel(_team(n)).A) for n in (3, 4)}
     return {
         "uav_above_payload": float((parameters.l - parameters.p[:, 2]).min()),
         "payload_on_pad": system.resting_altitude,
-        "beyond_sensors": radius - sensors,
         "passable_gap": 2.0 * (radius + margin + spare + SPARE),
         "impassable_gap": 2.0 * (passages._half_width + margin - SHORT),
         "states_of_uav": states[4] - states[3],
@@ -65,7 +63,6 @@ def sight() -> dict[str, Any]:
         "slow": limit.slow,
         "fastest": limit.fastest,
         "closing": limit.fastest + settings.closing_speed,
-        "follows_after": settings.latency + 0.5 * settings.stopping_delay,
     }
 
 
