@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 _PLACE = re.compile(r"\{\{([\w.|]+)(?::([^}]*))?\}\}")
+_LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
 ABSENT = "n/a"
 ANGLES = ("roll", "pitch", "yaw")
 
@@ -30,8 +31,11 @@ CAPTIONS = {
 }
 
 
-def paper_text(numbers: Mapping[str, Any]) -> str:
-    """Return the text of ``docs/paper.md`` with its numbers from ``numbers``; those that a quick run lacks are n/a."""
+def paper_text(numbers: Mapping[str, Any], *, links: bool = True) -> str:
+    """Return the text of ``docs/paper.md`` with its numbers from ``numbers``; those that a quick run lacks are n/a.
+
+    Without ``links``: for another folder, where there are none of the pages that it links to.
+    """
     template = resources.files("gcs.reproduce").joinpath("paper.md.in").read_text(encoding="utf-8")
 
     def put(match: re.Match[str]) -> str:
@@ -43,7 +47,7 @@ def paper_text(numbers: Mapping[str, Any]) -> str:
             return ABSENT
         return format(value, match[2]) if match[2] else str(value)
 
-    return _PLACE.sub(put, template)
+    return _PLACE.sub(put, template if links else _LINK.sub(r"\1", template))
 
 
 def write_page(out: Path, numbers: Mapping[str, Any], pictures: Sequence[str], seconds: float) -> Path:

@@ -122,7 +122,8 @@ def test_command_fills_a_folder(tmp_path, monkeypatch, capsys):
             assert getattr(image, "n_frames", 1) == (2 if name.endswith(".gif") else 1)
     found = json.loads((out / "numbers.json").read_text(encoding="utf-8"))
     assert found["tracking"]["project"]["lost_at_s"] is None
-    assert (out / "paper.md").read_text(encoding="utf-8") == paper_text(found)
+    text = (out / "paper.md").read_text(encoding="utf-8")
+    assert text == paper_text(found, links=False) and "](" not in text and "](" in paper_text(found)
     with (out / "matrices" / "A.csv").open(encoding="utf-8") as file:
         rows = list(csv.reader(file))
     assert len(rows) == len(rows[0]) == 61

@@ -77,7 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
             results = work.run(chosen, missions, out, arguments.jobs, done)
             found = rounded(numbers(chosen, results))
             write_numbers(out / "numbers.json", found)
-            (out / "paper.md").write_text(paper_text(found), encoding="utf-8")
+            (out / "paper.md").write_text(paper_text(found, links=False), encoding="utf-8")
             _write_matrices(out / "matrices")
             done("numbers and matrices")
             pictures = _draw(chosen, results, found, out, done)
