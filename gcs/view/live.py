@@ -6,7 +6,6 @@ for it. It ends, with the whole report, when its standard input does.
 
 from __future__ import annotations
 
-import json
 import logging
 import os
 import socket
@@ -17,6 +16,8 @@ from contextlib import suppress
 from http import HTTPStatus
 from pathlib import Path
 
+import numpy as np
+import orjson
 from websockets.datastructures import Headers
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
@@ -26,6 +27,7 @@ from websockets.typing import Origin
 from gcs.errors import GcsError
 from gcs.record.growing import GrowingTables
 from gcs.record.run_data import read_run
+from gcs.record.tables import TRUTH
 from gcs.view.page import page
 from gcs.view.page_data import PageData
 
@@ -46,10 +48,11 @@ class Records:
     def message(self) -> str | None:
         """Return what is new (JSON: ``header`` and ``blob`` of :class:`PageData`, ``final``); None: nothing yet."""
         self._tables.grow()
-        run, new = read_run(self._folder, self._tables), read_run(self._folder, self._tables.new())
-        if not len(new.time) or new.source != run.source:
+        new = read_run(self._folder, self._tables.new())
+        # Without a truth there are new rows of the estimate, unless only those of the truth are late.
+        if not len(new.time) or new.source != ("truth" if len(self._tables[TRUTH]) else "estimate"):
             return None
-        return _message(PageData(new, run), final=False)
+        return _message(PageData(new, self._tables), final=False)
 
     def final(self) -> str | None:
         """Return all of the run, which is over; None where nothing was flown."""
@@ -58,8 +61,8 @@ class Records:
 
 
 def _message(data: PageData, *, final: bool) -> str:
-    header, blob = data.document()
-    return json.dumps({"header": header, "blob": blob, "final": final}, separators=(",", ":"), allow_nan=False)
+    content = {"header": data.header, "blob": data.blob, "final": final}
+    return orjson.dumps(content, default=np.ndarray.tolist, option=orjson.OPT_SERIALIZE_NUMPY).decode()
 
 
 def show(folder: Path, listener: socket.socket, is_over: threading.Event) -> None:

@@ -10,6 +10,7 @@ import base64
 import shlex
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -90,12 +91,12 @@ class Blob:
 class PageData:
     """The header and the blob of one run.
 
-    ``so_far``: the whole run up to now, of which ``run`` has the rows that are new; None: the run is over.
+    ``so_far``: all rows of the tables of a run that goes on, of which ``run`` has those that are new; None: it is over.
     """
 
-    def __init__(self, run: RunData, so_far: RunData | None = None) -> None:
-        self._run, self._blob = run, Blob()
-        self._so_far, self._is_over = so_far or run, so_far is None
+    def __init__(self, run: RunData, so_far: Mapping[str, Table] | None = None) -> None:
+        self._run, self._blob, self._is_over = run, Blob(), so_far is None
+        self._so_far = run if so_far is None else replace(run, tables=so_far)
         self._channels: dict[str, Any] = {}
         self._times: dict[int, dict[str, Any]] = {}
         lasts = run.time[-1] - run.time[0] if len(run.time) > 1 else 0.0
@@ -117,9 +118,14 @@ class PageData:
             "clearance": None if nearest is None else nearest.header,
         }
 
+    @property
+    def blob(self) -> str:
+        """The arrays, in base64."""
+        return self._blob.encoded()
+
     def document(self) -> tuple[Mapping[str, Any], str]:
-        """Return the header, in terms of strict JSON, and the blob in base64."""
-        return to_json(self.header), self._blob.encoded()
+        """Return the header, in terms of strict JSON, and the blob."""
+        return to_json(self.header), self.blob
 
     def _add(self, name: str, time: Array, columns: Sequence[str], unit: str, values: Array) -> None:
         """Add a channel: ``values`` (T, C), or (T, S, C), at ``time`` (T,); without rows or values it is left out."""

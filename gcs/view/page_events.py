@@ -86,7 +86,8 @@ def isolations(run: RunData) -> Iterable[Event]:
             if row["code"] == "channel_isolated":
                 yield event("isolation", float(row["time_s"]), None, row["source"], row["text"], row["severity"])
         return
-    for source, channel in dict.fromkeys(zip(table["source"], table["channel"], strict=True)):
+    isolated = table[table["state"] == "isolated"]
+    for source, channel in dict.fromkeys(zip(isolated["source"], isolated["channel"], strict=True)):
         rows = table[(table["source"] == source) & (table["channel"] == channel)]
         states = np.array(rows["state"], dtype=str)
         edges = [0, *(np.flatnonzero(states[1:] != states[:-1]) + 1).tolist(), len(rows)]
