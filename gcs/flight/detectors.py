@@ -265,9 +265,10 @@ def _estimator_health(step: MonitorStep) -> None:
         step.raise_alarm(step.name(sender), MonitorAlarm.ID_SWAP, f"sends the data of {step.name(other)}")
     for channel in health.stuck_channels:
         step.raise_alarm(step.name(channel.source), MonitorAlarm.STUCK_SENSOR, channel.name)
-    for channel in health.isolation.isolated:
-        if step.steady or channel.kind is Position:
-            step.raise_alarm(step.name(channel.source), MonitorAlarm.CHANNEL_ISOLATED, channel.name)
+    isolated = [c for c in health.isolation.isolated if step.steady or c.kind is Position]
+    for source in dict.fromkeys(channel.source for channel in isolated):
+        names = ", ".join(channel.name for channel in isolated if channel.source == source)
+        step.raise_alarm(step.name(source), MonitorAlarm.CHANNEL_ISOLATED, names)
     for group, (poses, _) in health.isolated_groups.items():
         names = ("positions", "velocities") if group.kind is Position else ("attitudes", "rates")
         source, owner = ("payload", "the payload") if group.of_payload else ("team", "all vehicles")

@@ -71,7 +71,7 @@ def test_estimate_is_the_same_whatever_an_isolated_channel_measures():
                 estimator.add(measurement)
             estimate = estimator.estimate(INTERVAL * (k + 1), REFERENCE)
             if k >= 69:
-                assert estimator.health.isolation.isolated == (Channel(1, Position, 0),)
+                assert Channel(1, Position, 0) in estimator.health.isolation.isolated
         estimates.append(estimate.x)
     assert estimates[0] == pytest.approx(estimates[1], abs=1e-12)
 

@@ -96,6 +96,15 @@ def test_flight_with_faults_one_after_another_completes_within_limits(name, tmp_
     check_flown_within(LIMITS, mission, tmp_path / "run", FAULTS[name], seed=31)
 
 
+@pytest.mark.parametrize("rate", [0.15, *(pytest.param(rate, marks=pytest.mark.long) for rate in (0.05, 0.4))])
+def test_velocity_that_drifts_does_not_outweigh_the_right_position(rate, tmp_path):
+    """The state follows it at first, so that it is the position that does not fit: the team once collided."""
+    drift = of_one(Drift(rate=rate, channel="velocity", axes=("y",)), start=8.0, duration=8.0)
+    mission = short_figure(tmp_path, duration=12.0)
+    limits = Limits(position_rmse=0.15, settle=0.0, payload_tilt_deg=10.0, uav_separation=0.75)
+    check_flown_within(limits, mission, tmp_path / "run", drift, seed=36)
+
+
 def test_bias_of_attitude_on_board_is_compensated(tmp_path):
     """The disturbance force is estimated, then the vehicle deviates no more."""
     wrong = of_one(Bias(amount=0.05, channel="attitude", at_source=True))

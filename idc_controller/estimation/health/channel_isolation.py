@@ -79,7 +79,8 @@ class ChannelIsolation:
             count = self._rejections.pop(channel, 0) + (-1 if accepted[part].all() else 1)
             is_wrong = channel.kind is not Position or is_inconsistent(channel.source)
             if count >= limit and is_wrong and self._is_no_majority_with(channel.source):
-                self._acceptances[channel] = 0
+                for wrong in self._suspected(channel):
+                    self._acceptances.setdefault(wrong, 0)
             elif count > 0:
                 self._rejections[channel] = min(count, limit)
 
@@ -100,6 +101,17 @@ class ChannelIsolation:
             self._acceptances[channel] = self._acceptances[channel] + 1 if squared <= self._gate else 0
             if self._acceptances[channel] >= self._settings.acceptances:
                 del self._acceptances[channel]
+
+    def _suspected(self, rejected: Channel) -> tuple[Channel, ...]:
+        """Return the channels of which one must be wrong if this one is rejected.
+
+        Of a position and a velocity that contradict each other the state may have followed the wrong one, so that the
+        right one is rejected. That one is restored when it is consistent with the other sources. As long as it takes,
+        the state of the vehicle is predicted only: of no more than one vehicle at a time.
+        """
+        if rejected.kind is not Position or any(uav != rejected.source for uav in self.uavs_without_position):
+            return (rejected,)
+        return tuple(rejected._replace(part=part) for part in (0, 1))
 
     def _is_no_majority_with(self, source: int) -> bool:
         return 2 * len({channel.source for channel in self._acceptances} | {source}) <= self._number_of_uavs
