@@ -266,9 +266,9 @@ def _estimator_health(step: MonitorStep) -> None:
     for channel in health.stuck_channels:
         step.raise_alarm(step.name(channel.source), MonitorAlarm.STUCK_SENSOR, channel.name)
     isolated = [c for c in health.isolation.isolated if step.steady or c.kind is Position]
-    for source in dict.fromkeys(channel.source for channel in isolated):
-        names = ", ".join(channel.name for channel in isolated if channel.source == source)
-        step.raise_alarm(step.name(source), MonitorAlarm.CHANNEL_ISOLATED, names)
+    for uav in dict.fromkeys(channel.source for channel in isolated):
+        channels = ", ".join(channel.name for channel in isolated if channel.source == uav)
+        step.raise_alarm(step.name(uav), MonitorAlarm.CHANNEL_ISOLATED, channels)
     for group, (poses, _) in health.isolated_groups.items():
         names = ("positions", "velocities") if group.kind is Position else ("attitudes", "rates")
         source, owner = ("payload", "the payload") if group.of_payload else ("team", "all vehicles")
