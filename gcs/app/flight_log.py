@@ -3,12 +3,15 @@
 import logging
 import math
 
+from gcs.flight.alarms import Severity
 from gcs.flight.ground_station import GroundStation
 from gcs.flight.phase import Phase
 from gcs.mavlink import px4
 from gcs.mavlink.vehicle_link import VehicleLink
 
 LOG = logging.getLogger("gcs")
+_RED, _YELLOW = 31, 33
+"""Colours of ANSI, in which alarms are shown at a terminal."""
 
 
 class FlightLog:
@@ -34,7 +37,9 @@ class FlightLog:
         for alarm in flight.failsafes.alarms.alarms[self._alarms :]:
             self._alarms += 1
             text = alarm.text and f" ({alarm.text})"
-            LOG.warning("%.2f s: %s: %s%s", alarm.time - uptime, alarm.source, alarm.code.code, text)
+            colour = _RED if alarm.code.severity <= Severity.ERROR else _YELLOW
+            line = "%.2f s: %s: %s%s"
+            LOG.warning(line, alarm.time - uptime, alarm.source, alarm.code.code, text, extra={"colour": colour})
         for link in self._links:
             link.update(flight.elapsed)
 

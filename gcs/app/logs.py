@@ -97,3 +97,8 @@ class _StandardError(logging.StreamHandler[TextIO]):
     def emit(self, record: logging.LogRecord) -> None:
         self.stream = sys.stderr
         super().emit(record)
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Return the line, in the colour of the record where a progress display prints it, which knows the terminal."""
+        text, colour = super().format(record), getattr(record, "colour", None)
+        return f"\x1b[{colour}m{text}\x1b[0m" if colour and hasattr(self.stream, "rich_proxied_file") else text

@@ -47,6 +47,10 @@ class Flight:
         self.phase = Phase.CONNECT
         self.time = 0.0
         """Team time of the last control step."""
+        self.ground_time = 0.0
+        """Ground time of the last control step."""
+        self.last_record: StepRecord | None = None
+        """The last control step that had an estimate; None before take-off."""
         self.takeoff_time = math.nan
         """Time at which the rotors began to spool up; nan before."""
         self.mission_trajectory: MissionTrajectory | None = None
@@ -167,7 +171,7 @@ class Flight:
         Returns:
             The set-points, None: nothing is to be sent; and what was estimated and decided, if anything was.
         """
-        self.time = time
+        self.time, self.ground_time = time, now
         self._evaluate(Check.STEP, time, now)
         if self.phase in IN_AIR:
             self._evaluate(Check.IN_AIR, time, now)
@@ -241,7 +245,7 @@ class Flight:
         in_air = self.phase in IN_AIR
         if in_air and self._evaluate(Check.ESTIMATE, time, now, estimate):
             return None, None
-        record = self.control.decide(
+        self.last_record = record = self.control.decide(
             estimate, trajectory, on_ground=not in_air, learn_load=self.system.payload.is_clear(estimate)
         )
         share = self._thrust_share(time, estimate)

@@ -24,6 +24,10 @@ class LinkStatistics:
         """``reordering_time`` (s): a gap that is older is a loss; from then on all are, until a message comes late."""
         self._reordering_time = reordering_time
         self.lost = 0
+        self.received = 0
+        """Messages, without duplicates."""
+        self.missing = 0
+        """Messages of the gaps that are losses."""
         self.reordered = 0
         self.duplicated = 0
         self.damaged = 0
@@ -59,10 +63,12 @@ class LinkStatistics:
                 missing = {(newest + k) % NUMBERS for k in range(1, ahead)}
                 self._gaps.append((now, missing))
             self._seen.append(number)
+            self.received += 1
             return True
         if number in self._seen:
             self.duplicated += 1
         else:
+            self.received += 1
             self.reordered += 1
             self._losing = False
             for _, missing in self._gaps:
@@ -82,9 +88,12 @@ class LinkStatistics:
                 self.settle(now)
             begin = (number + first) % NUMBERS
             self._seen.extend(_CYCLE[begin : begin + length - first])
+            self.received += length - first
 
     def settle(self, now: float) -> None:
         """Count the gaps that are not filled by ``now`` (s) as losses; those after a loss at once."""
         while self._gaps and (self._losing or now - self._gaps[0][0] > self._reordering_time):
-            self._losing = bool(self._gaps.popleft()[1])
+            missing = len(self._gaps.popleft()[1])
+            self._losing = missing > 0
             self.lost += self._losing
+            self.missing += missing

@@ -94,7 +94,7 @@ def run(arguments: argparse.Namespace) -> int:
     with ExitStack() as started:
         # Before there are threads: those of the progress line.
         vehicle_sim = None if options.connect is not None else started.enter_context(ForkedProgram(PROGRAM))
-        progress = started.enter_context(FlightProgress(console))
+        progress = started.enter_context(FlightProgress(console, phases_logged=arguments.verbose > 0))
         result = fly(options, mission, progress.update, vehicle_sim)
     files: list[Path] = []
     if result.flown and not arguments.no_pictures:

@@ -1,0 +1,139 @@
+"""Status of a flight for the operator, by what the ground knows. The flight is only read."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from enum import Enum
+from typing import NamedTuple
+
+import numpy as np
+
+from gcs.flight.control_loop import StepRecord
+from gcs.flight.flight import Flight
+from gcs.flight.mission_trajectory import MissionTrajectory
+from gcs.flight.phase import Phase
+from gcs.mavlink.vehicle_link import VehicleLink
+from idc_controller.geometry.formation import Formation
+from idc_controller.geometry.obstacles import Region
+from idc_controller.safety.separation import PredictedObstacles, separations
+
+_LINK_WINDOW = 2.0
+"""s; over which loss and rate of a link are taken at least."""
+_ESTIMATE_AGE = 0.5
+"""s; beyond which an estimate is not shown."""
+_LONGEST = 3600.0
+"""s; beyond which the end of a mission is not computed in advance."""
+
+
+class State(Enum):
+    """State of a figure; the value is its colour."""
+
+    OK = "green"
+    WARNING = "yellow"
+    BAD = "red"
+
+
+class Figure(NamedTuple):
+    """A figure with its unit, and its state."""
+
+    text: str
+    state: State = State.OK
+
+
+class FlightStatus:
+    """Times, payload, clearance and links of one flight."""
+
+    def __init__(self, flight: Flight) -> None:
+        system = flight.mission.system
+        self._flight, self._margin, self._range = flight, system.avoidance.margin, system.range_sensor.range
+        self._formation = formation = Formation(flight.control.controller.parameters)
+        self._reach = float(np.hypot(*formation.hover_offsets[:, :2].T).max()) + formation.disc_radius
+        planned = MissionTrajectory(flight.mission, np.array([0.0, 0.0, -system.resting_altitude]), 0.0).trajectory
+        planned.position(_LONGEST)  # a lazy trajectory knows its end once it is evaluated there
+        self._planned_duration = planned.end
+        self._links = [_LinkStatus(flight, link) for link in flight.system.team.links]
+
+    def times(self) -> tuple[float, float]:
+        """Return time since take-off began, nan: not yet, and when touchdown is expected on that clock, inf: unknown.
+
+        What remains of the mission is taken to go on at its own speed (s).
+        """
+        flight = self._flight
+        time, mission, end = flight.time, flight.mission_trajectory, flight.expected_end
+        if mission is None or flight.phase is Phase.AUTONOMOUS_LANDING:
+            return time - flight.takeoff_time, math.inf
+        if math.isinf(end) and not flight.reason:
+            end = mission.start + self._planned_duration
+        remaining = max(end - flight.system.guidance.progress(time), 0.0)
+        return time - flight.takeoff_time, time + remaining - flight.takeoff_time
+
+    def payload(self) -> list[Figure]:
+        """Return position error about the mission's reference, tilt, speed and clearance; empty: no estimate."""
+        flight, record = self._flight, self._flight.last_record
+        if record is None or flight.time - record.estimate.time > _ESTIMATE_AGE:
+            return []
+        x, time = record.estimate.x[:12].tolist(), record.estimate.time
+        error = math.dist(x[0:3], flight.reference(np.array([time]))[0][0])
+        return [
+            Figure(f"error {error:5.2f} m"),
+            Figure(f"tilt {math.degrees(max(abs(x[6]), abs(x[7]))):4.1f} deg"),
+            Figure(f"speed {math.hypot(*x[3:6]):4.1f} m/s"),
+            self._clearance(record),
+        ]
+
+    def _clearance(self, record: StepRecord) -> Figure:
+        """Return the least distance of the hull from what is on the obstacle map, less its growth.
+
+        The hull is that of a level payload where the estimate has it, with the links of the plan.
+        """
+        position, acceleration = record.estimate.x[None, 0:3], record.decision.flat.payload[2, :1]
+        region = Region(position[0], self._range + self._reach)
+        found = self._flight.system.obstacle_map.predict(np.array([record.estimate.time]), region)
+        near = separations(self._formation, position, acceleration, PredictedObstacles(found), self._range)
+        if not near:
+            return Figure(f"no obstacle within {self._range:.0f} m")
+        least = min(separation.clearance for separation in near)
+        state = State.OK if least >= self._margin else State.WARNING if least > 0.0 else State.BAD
+        return Figure(f"clearance {least:.2f} m (margin {self._margin:.2f} m)", state)
+
+    def links(self) -> list[Figure]:
+        """Return loss (%), one-way latency (ms) and rate (Hz) of the telemetry of each vehicle."""
+        return [link.figure() for link in self._links]
+
+
+class _LinkStatus:
+    """Status of one link, by sequence numbers and TIMESYNC."""
+
+    def __init__(self, flight: Flight, link: VehicleLink) -> None:
+        self._flight, self._link = flight, link
+        self._counts: deque[tuple[float, int, int]] = deque()
+        """Ground time (s), messages received and missing."""
+        self._count()
+
+    def _count(self) -> tuple[float, int, int]:
+        """Return how long counts were taken (s), and the messages received and missing in this time."""
+        now, counts, found = self._flight.ground_time, self._counts, self._link.statistics
+        counts.append((now, found.received, found.missing))
+        while len(counts) > 2 and now - counts[1][0] >= _LINK_WINDOW:
+            counts.popleft()
+        since, received, missing = counts[0]
+        return now - since, found.received - received, found.missing - missing
+
+    def figure(self) -> Figure:
+        """Return what there is to be shown."""
+        link, system = self._link, self._flight.mission.system
+        limits, name = system.flight.failsafe, f"link {link.system_id}:"
+        duration, received, missing = self._count()
+        silent = self._flight.ground_time - link.telemetry_received_at
+        if math.isinf(silent):
+            return Figure(f"{name} no telemetry yet", State.WARNING)
+        if silent > limits.telemetry_timeout:
+            return Figure(f"{name} no telemetry for {silent:.1f} s", State.BAD)
+        loss, latency = missing / max(received + missing, 1), link.clock.delay
+        rate = received / duration if duration > 0.0 else 0.0
+        is_late = latency > system.flight.monitor.latency_periods / system.rates.control
+        state = State.WARNING if is_late or loss > system.mavlink.link.second_copy_loss else State.OK
+        if latency > limits.latency_limit:
+            state = State.BAD
+        return Figure(f"{name} loss {100.0 * loss:4.1f} %, {1e3 * latency:3.0f} ms, {rate:3.0f} Hz", state)

@@ -1,0 +1,144 @@
+"""The progress of a flight: a block at a terminal, lines elsewhere, and the flight as it is without."""
+
+import argparse
+import io
+import re
+
+import numpy as np
+import pytest
+from flights import HOP, InProcessFlight, system_file
+from rich.console import Console
+
+from gcs.app.flight_log import FlightLog
+from gcs.app.logs import logging_to
+from gcs.app.progress import FlightProgress
+from gcs.mission.read import read_mission
+from idc_controller.geometry.formation import Formation
+
+POLE, RADIUS = 5.0, 0.4
+MISSION = f"""
+{HOP}
+[[obstacle]]
+name = "pole"
+shape = "pole"
+position = [0.0, {POLE}]
+radius = {RADIUS}
+height = 10.0
+known = true
+
+[[fault]]
+kind = "bias"
+start = 4.0
+vehicles = [2]
+channel = "position"
+axes = ["x"]
+amount = 0.6
+
+[[fault]]
+kind = "packet_loss"
+start = 2.0
+vehicles = [3]
+direction = "telemetry"
+probability = 0.2
+"""
+ISOLATED = "vehicle 2: channel_isolated (position)"
+CONTROL = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
+QUIET = argparse.Namespace(verbose=0, quiet=0, log_file=None)
+
+
+class Terminal(io.StringIO):
+    """A file that says that it is a terminal."""
+
+    def isatty(self):
+        return True
+
+
+class Flown:
+    """A flight with what was printed, and the formation's hull."""
+
+    def __init__(self, folder, output=None, **console):
+        folder.mkdir()
+        system_file(folder)
+        (folder / "hop.toml").write_text(MISSION)
+        mission = read_mission(folder / "hop.toml")
+        with InProcessFlight(mission, folder / "run", obstacles=mission.obstacles) as flight:
+            if output is None:
+                flight.fly()
+            else:
+                log = FlightLog(flight.station)
+                with FlightProgress(Console(file=output, width=80, highlight=False, **console)) as progress:
+                    flight.fly(lambda _: (log.update(), progress.update(flight.flight)))
+            self.summary, self.alarms = flight.summary(), flight.flight.failsafes.alarms.alarms
+        self.records = {path.name: path.read_bytes() for path in (folder / "run").iterdir()}
+        self.output = output and output.getvalue()
+        hull = Formation(mission.system.parameters()).hull_points(np.zeros((1, 3)))[0]
+        self.clearance = POLE - RADIUS - hull[:, 1].max()
+
+
+@pytest.fixture(scope="module")
+def flights(tmp_path_factory):
+    """The same flight at a terminal, with plain lines, and without any of them."""
+    folder, terminal = tmp_path_factory.mktemp("progress"), Terminal()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("sys.stderr", terminal)
+        with logging_to(QUIET):
+            drawn = Flown(folder / "drawn", terminal, force_terminal=True)
+    return drawn, Flown(folder / "plain", io.StringIO()), Flown(folder / "without")
+
+
+@pytest.mark.slow
+def test_terminal_shows_phase_payload_clearance_and_links_within_its_width(flights):
+    drawn, *_ = flights
+    lines = [line.rstrip() for line in CONTROL.sub("", drawn.output).replace("\r", "\n").splitlines()]
+    assert max(map(len, lines)) <= 80
+    assert any(re.search(r"land .*━ +\d+ of 1\d s 0:\d\d:\d\d$", line) for line in lines)
+    payload = re.compile(
+        r"error +0\.\d\d m  tilt +0\.\d deg  speed +\d\.\d m/s  clearance \d\.\d\d m \(margin 0\.50 m\)$"
+    )
+    assert any(map(payload.match, lines))
+    for first in (1, 3):
+        figures = [rf"link {link}: loss +[\d.]+ %, +\d+ ms, +\d+ Hz" for link in (first, first + 1)]
+        assert any(re.fullmatch("  ".join(figures), line) for line in lines)
+
+
+@pytest.mark.slow
+def test_terminal_prints_each_phase_and_each_alarm_once(flights):
+    drawn, *_ = flights
+    text = CONTROL.sub("", drawn.output)
+    assert text.count(ISOLATED) == 1
+    for alarm in drawn.alarms:
+        assert f"{alarm.time:.2f} s: {alarm.source}: {alarm.code.code}" in text
+    _, *rows = drawn.records["phases.csv"].decode().splitlines()
+    assert re.findall(r" s: phase ([a-z ]+)$", text, re.MULTILINE) == [row.split(",")[1] for row in rows]
+    assert re.search(r"\x1b\[31m\d+\.\d\d s: vehicle 2: channel_isolated", drawn.output)  # an error is red
+
+
+@pytest.mark.slow
+def test_plain_lines_have_no_control_sequences_and_figures_every_ten_seconds(flights):
+    _, plain, _ = flights
+    assert "\x1b" not in plain.output and "\r" not in plain.output
+    lines = plain.output.splitlines()
+    assert max(map(len, lines)) <= 80
+    status = [i for i, line in enumerate(lines) if line.startswith("   10.00 s  ")]
+    assert len(status) == 1 and not any(line.startswith("   20.") for line in lines)
+    time, end, error, clearance, loss = re.match(
+        r"   10.00 s  (\d+) of (\d+) s; error ([\d.]+) m; tilt [\d.]+ deg; speed [\d.]+ m/s\n"
+        r" +clearance ([\d.]+) m \(margin 0.50 m\)\n"
+        r" +link 1: loss 0.0 %, \d+ ms, \d+ Hz; link 2: loss 0.0 %, \d+ ms, \d+ Hz\n"
+        r" +link 3: loss ([\d.]+) %, \d+ ms, \d+ Hz; link 4: loss 0.0 %, \d+ ms, \d+ Hz",
+        "\n".join(lines[status[0] :]),
+    ).groups()
+    assert float(time) == pytest.approx(9.0, abs=1.0)
+    assert float(end) == pytest.approx(plain.summary["duration_s"], abs=4.0)  # spool-down comes after touchdown
+    assert float(error) < 0.1 and float(clearance) == pytest.approx(plain.clearance, abs=0.05)
+    assert float(loss) == pytest.approx(20.0, abs=8.0)
+
+
+@pytest.mark.slow
+def test_records_do_not_depend_on_what_is_printed(flights):
+    drawn, plain, without = flights
+    timed = {"steps.csv", "summary.json"}  # compute times, and CPU
+    for printed in (drawn, plain):
+        assert printed.records.keys() == without.records.keys() > timed
+        different = {name for name, content in without.records.items() if printed.records[name] != content}
+        assert different <= timed
