@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterable, Sequence
+import time
+from collections.abc import Sequence
+from datetime import timedelta
+from itertools import cycle
 
-from rich.columns import Columns
-from rich.console import Console, Group, RenderableType
+from rich.console import Console, Group
 from rich.live import Live
-from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
 from gcs.app.flight_status import Figure, FlightStatus
@@ -32,27 +33,20 @@ class FlightProgress:
         """``phases_logged``: the log prints them at the terminal already."""
         self._console, self._redrawn, self._phases_logged = console, console.is_interactive, phases_logged
         self._interval = DRAW_INTERVAL if self._redrawn else STATUS_INTERVAL
-        self._bar = Progress(
-            SpinnerColumn(),
-            TextColumn("{task.description:<10}"),
-            BarColumn(bar_width=None),
-            TextColumn("{task.fields[flown]}"),
-            TimeElapsedColumn(),
-            console=console,
-            expand=True,
-        )
-        self._task = self._bar.add_task("connect", total=None, flown="")
-        self._block: RenderableType = self._bar
+        self._phase: Phase | None = None
+        self._due = 0
+        self._status: FlightStatus | None = None
+        self._begin, self._frames = time.monotonic(), cycle("-\\|/")
+        self._times = math.nan, math.inf
+        self._figures: list[Text] = []
+        self._is_shown = False
         self._live = Live(
-            get_renderable=lambda: self._block,
+            get_renderable=self._block,
             console=console,
             refresh_per_second=4,
             transient=True,
             redirect_stderr=sys.stderr.isatty(),  # a file keeps what is for it
         )
-        self._phase: Phase | None = None
-        self._due = 0
-        self._status: FlightStatus | None = None
 
     def update(self, flight: Flight) -> None:
         """Print or draw what has changed since the last exchange."""
@@ -64,28 +58,43 @@ class FlightProgress:
             elif not self._phases_logged:
                 self._console.print(f"{flight.elapsed:.2f} s: phase {flight.phase.value}")
         due = math.floor(flight.elapsed / self._interval)
-        if due == self._due and not changed:
+        # A flight faster than real time has more figures than are shown.
+        if not changed and (due == self._due or (self._redrawn and not self._is_shown)):
             return
         if self._status is None:
             self._status = FlightStatus(flight)
         if self._redrawn:
-            self._draw(flight.phase, self._status)
+            self._draw(self._status)
+            if changed:
+                self._live.refresh()
         elif due != self._due:
             self._print(flight.elapsed, self._status)
         self._due = due
 
-    def _draw(self, phase: Phase, status: FlightStatus) -> None:
-        time, end = status.times()
-        completed, total = (time, end) if math.isfinite(end) else (0.0, None)
-        self._bar.update(self._task, description=phase.value, completed=completed, total=total, flown=_flown(time, end))
-        self._block = Group(self._bar, _columns(status.payload()), _columns(status.links()))
+    def _draw(self, status: FlightStatus) -> None:
+        self._is_shown = False
+        rows = [row for group in (status.payload(), status.links()) for row in _rows(group, self._console.width)]
+        self._figures = [Text("  ").join(Text(figure.text, style=figure.state.value) for figure in row) for row in rows]
+        self._times = status.times()
+
+    def _block(self) -> Group:
+        """Return what is drawn. Texts only: tables would cost several times as much."""
+        self._is_shown = True
+        phase, (flown, end) = self._phase or Phase.CONNECT, self._times
+        begin = f"{next(self._frames)} {phase.value:<10} "
+        rest = f" {_flown(flown, end)} {timedelta(seconds=int(time.monotonic() - self._begin))}"
+        width = max(self._console.width - len(begin) - len(rest), 0)
+        done = round(width * min(flown / end, 1.0)) if math.isfinite(end) else 0
+        line = "-" if self._console.options.ascii_only else "━"
+        bar = Text.assemble(begin, (line * done, "bar.complete"), (line * (width - done), "bar.back"), rest)
+        return Group(bar, *self._figures)
 
     def _print(self, elapsed: float, status: FlightStatus) -> None:
-        begin = f"{elapsed:8.2f} s  "
-        width = self._console.width - len(begin)
-        for texts in ([_flown(*status.times()), *_texts(status.payload())], _texts(status.links())):
-            for line in _lines(texts, width):
-                self._console.print(begin + line, soft_wrap=True)
+        begin, flown = f"{elapsed:8.2f} s  ", _flown(*status.times())
+        for group in ([Figure(flown)] if flown else []) + status.payload(), status.links():
+            figures = [Figure(" ".join(figure.text.split())) for figure in group]
+            for row in _rows(figures, self._console.width - len(begin)):
+                self._console.print(begin + "; ".join(figure.text for figure in row), soft_wrap=True)
                 begin = " " * len(begin)
 
     def __enter__(self) -> FlightProgress:
@@ -97,28 +106,21 @@ class FlightProgress:
         self._live.stop()
 
 
-def _flown(time: float, end: float) -> str:
+def _flown(flown: float, end: float) -> str:
     """Return the time flown of the expected one (s), as far as they are known."""
-    if math.isnan(time):
+    if math.isnan(flown):
         return ""
-    return f"{time:.0f} of {end:.0f} s" if math.isfinite(end) else f"{time:.0f} s"
+    return f"{flown:.0f} of {end:.0f} s" if math.isfinite(end) else f"{flown:.0f} s"
 
 
-def _columns(figures: Sequence[Figure]) -> RenderableType:
-    """Return the figures side by side, in as many lines as they need."""
-    return Columns([Text(figure.text, style=figure.state.value) for figure in figures], padding=(0, 2))
-
-
-def _texts(figures: Sequence[Figure]) -> list[str]:
-    return [" ".join(figure.text.split()) for figure in figures]
-
-
-def _lines(texts: Iterable[str], width: int) -> list[str]:
-    """Return lines of up to ``width`` characters in which the texts that are not empty stand one after the other."""
-    lines: list[str] = []
-    for text in filter(None, texts):
-        if lines and len(lines[-1]) + len(text) + 2 <= width:
-            lines[-1] += f"; {text}"
-        else:
-            lines.append(text)
-    return lines
+def _rows(figures: Sequence[Figure], width: int) -> list[list[Figure]]:
+    """Return the figures in rows of up to ``width`` characters, with two between one and the next."""
+    rows: list[list[Figure]] = []
+    free = 0
+    for figure in figures:
+        free -= len(figure.text) + 2
+        if free < 0 or not rows:
+            rows.append([])
+            free = width - len(figure.text)
+        rows[-1].append(figure)
+    return rows
