@@ -3,16 +3,20 @@
 import argparse
 import io
 import re
+import sys
 
 import numpy as np
 import pytest
-from flights import HOP, InProcessFlight, system_file
+from flights import HOP, MISSIONS, InProcessFlight, system_file
 from rich.console import Console
 
 from gcs.app.flight_log import FlightLog
+from gcs.app.fly import ground_station
 from gcs.app.logs import logging_to
 from gcs.app.progress import FlightProgress
+from gcs.flight.flight_status import Figure, FlightStatus, State
 from gcs.mission.read import read_mission
+from gcs.record.recorder import FlightRecorder
 from idc_controller.geometry.formation import Formation
 
 POLE, RADIUS = 5.0, 0.4
@@ -132,6 +136,36 @@ def test_plain_lines_have_no_control_sequences_and_figures_every_ten_seconds(fli
     assert float(end) == pytest.approx(plain.summary["duration_s"], abs=4.0)  # spool-down comes after touchdown
     assert float(error) < 0.1 and float(clearance) == pytest.approx(plain.clearance, abs=0.05)
     assert float(loss) == pytest.approx(20.0, abs=8.0)
+
+
+def test_links_show_loss_latency_and_silence_by_their_limits(tmp_path):
+    mission = read_mission(MISSIONS / "hop.toml")
+    with FlightRecorder(tmp_path, 0.0) as recorder:
+        flight = ground_station(mission, [None] * 4, recorder).flight
+        status = FlightStatus(flight)
+        assert status.links()[0] == Figure("link 1: no telemetry yet", State.WARNING)
+        flight.ground_time = 2.0
+        for link, lost, delay, heard in zip(
+            flight.system.team.links, (0, 40, 0, 0), (0.001, 0.001, 0.2, 0.001), (2.0, 2.0, 2.0, 1.0), strict=True
+        ):
+            link.statistics.received, link.statistics.missing = 200 - lost, lost
+            link.clock.add_answer(link.clock.request(0.0), 2.0 * delay)
+            link.position_received_at = heard
+        assert status.links() == [
+            Figure("link 1: loss  0.0 %,   1 ms, 100 Hz", State.OK),
+            Figure("link 2: loss 20.0 %,   1 ms,  80 Hz", State.WARNING),
+            Figure("link 3: loss  0.0 %, 200 ms, 100 Hz", State.BAD),
+            Figure("link 4: no telemetry for 1.0 s", State.BAD),
+        ]
+
+
+@pytest.mark.parametrize("is_terminal", [True, False])
+def test_standard_error_of_a_file_is_not_drawn(monkeypatch, is_terminal):
+    drawn, error = Terminal(), Terminal() if is_terminal else io.StringIO()
+    monkeypatch.setattr("sys.stderr", error)
+    with FlightProgress(Console(file=drawn, force_terminal=True)):
+        print("a warning", file=sys.stderr)
+    assert ("a warning" in drawn.getvalue(), "a warning" in error.getvalue()) == (is_terminal, not is_terminal)
 
 
 @pytest.mark.slow

@@ -135,12 +135,13 @@ def test_parameter_that_is_answered_is_known(linked):
     assert linked.link.status.parameters == {"THR_MAX": 27.5}
 
 
-@pytest.mark.parametrize(("component", "lost"), [(OWN, 1), (UNIT, 0)])
-def test_gaps_in_the_numbers_of_the_autopilot_alone_are_losses(linked, component, lost):
+@pytest.mark.parametrize(("component", "lost", "messages"), [(OWN, 1, (2, 4)), (UNIT, 0, (0, 0))])
+def test_gaps_in_the_numbers_of_the_autopilot_alone_are_losses(linked, component, lost, messages):
     linked.send(1.0, attitude(), component=component)
     linked.send(1.1, attitude(STAMP + 20), component=component, lost=4)
     linked.link.statistics.settle(100.0)
     assert linked.link.statistics.lost == lost
+    assert (linked.link.statistics.received, linked.link.statistics.missing) == messages
 
 
 def test_points_of_a_scan_are_counted_one_by_one(linked):
@@ -155,3 +156,4 @@ def test_points_of_a_scan_are_counted_one_by_one(linked):
     linked.send(1.1, attitude(STAMP + 40))
     linked.link.statistics.settle(100.0)
     assert linked.link.statistics.lost == 1
+    assert (linked.link.statistics.received, linked.link.statistics.missing) == (13, 1)

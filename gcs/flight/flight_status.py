@@ -27,11 +27,11 @@ _LONGEST = 3600.0
 
 
 class State(Enum):
-    """State of a figure; the value is its colour."""
+    """State of a figure."""
 
-    OK = "green"
-    WARNING = "yellow"
-    BAD = "red"
+    OK = "ok"
+    WARNING = "warning"
+    BAD = "bad"
 
 
 class Figure(NamedTuple):
