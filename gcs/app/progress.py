@@ -22,7 +22,7 @@ DRAW_INTERVAL = 0.5
 STATUS_INTERVAL = 10.0
 """s of flight time from one print of the figures to the next elsewhere."""
 
-_COLOURS = {State.OK: "green", State.WARNING: "yellow", State.BAD: "red"}
+_COLOURS = {None: "", State.OK: "green", State.WARNING: "yellow", State.BAD: "red"}
 
 
 class FlightProgress:

@@ -14,6 +14,9 @@ from gcs.flight.flight import Flight
 from gcs.flight.mission_trajectory import MissionTrajectory
 from gcs.flight.phase import Phase
 from gcs.mavlink.vehicle_link import VehicleLink
+from gcs.mission.flown_legs import End, flown_legs
+from gcs.mission.model import Mission
+from gcs.mission.route import Route
 from idc_controller.geometry.formation import Formation
 from idc_controller.geometry.obstacles import Region
 from idc_controller.safety.separation import PredictedObstacles, separations
@@ -22,7 +25,7 @@ _LINK_WINDOW = 2.0
 """s; over which loss and rate of a link are taken at least."""
 _ESTIMATE_AGE = 0.5
 """s; beyond which an estimate is not shown."""
-_LONGEST = 3600.0
+_LONGEST = 1800.0
 """s; beyond which the end of a mission is not computed in advance."""
 
 
@@ -35,10 +38,10 @@ class State(Enum):
 
 
 class Figure(NamedTuple):
-    """A figure with its unit, and its state."""
+    """A figure with its unit, and its state; None: there is no limit to it."""
 
     text: str
-    state: State = State.OK
+    state: State | None = None
 
 
 class FlightStatus:
@@ -49,9 +52,7 @@ class FlightStatus:
         self._flight, self._margin, self._range = flight, system.avoidance.margin, system.range_sensor.range
         self._formation = formation = Formation(flight.control.controller.parameters)
         self._reach = float(np.hypot(*formation.hover_offsets[:, :2].T).max()) + formation.disc_radius
-        planned = MissionTrajectory(flight.mission, np.array([0.0, 0.0, -system.resting_altitude]), 0.0).trajectory
-        planned.position(_LONGEST)  # a lazy trajectory knows its end once it is evaluated there
-        self._planned_duration = planned.end
+        self._planned_duration = _planned_duration(flight.mission)
         self._links = [_LinkStatus(flight, link) for link in flight.system.team.links]
 
     def times(self) -> tuple[float, float]:
@@ -100,6 +101,16 @@ class FlightStatus:
     def links(self) -> list[Figure]:
         """Return loss (%), one-way latency (ms) and rate (Hz) of the telemetry of each vehicle."""
         return [link.figure() for link in self._links]
+
+
+def _planned_duration(mission: Mission) -> float:
+    """Return the time from the climb to touchdown at the mission's own speed (s); inf: endless, or too long."""
+    reference, system = mission.reference, mission.system
+    if isinstance(reference, Route) and flown_legs(reference, system).end is not End.LANDING:
+        return math.inf
+    trajectory = MissionTrajectory(mission, np.array([0.0, 0.0, -system.resting_altitude]), 0.0).trajectory
+    trajectory.position(_LONGEST)  # a lazy trajectory knows its end once it is evaluated there
+    return trajectory.end
 
 
 class _LinkStatus:
