@@ -10,13 +10,13 @@ from gcs.record.arrival import Arrival
 from gcs.record.landing import in_air, landing_figures, onsets
 from gcs.record.outcome import Outcome
 from gcs.record.reader import Table
+from gcs.record.result import LIMITS, result_rows
 from gcs.record.run_data import RunData, position_error
 from gcs.record.run_folder import FORMAT, SUMMARY, write_json
 from gcs.record.safety import safety_figures
 from idc_controller.arrays import Array
 from idc_controller.rotations import euler_from_quaternion
 
-LIMITS = ("position_rmse", "payload_tilt_deg", "clearance", "uav_separation", "touchdown_speed", "arrival")
 DEFAULT_SETTLE = 10.0  # s
 STEP_PARTS = {
     "telemetry": "telemetry_ms", "estimation": "estimator_ms", "perception": "perception_ms",
@@ -43,9 +43,8 @@ def summarise(
 
     The caller says how the flight ended (an :class:`Outcome`) and why, and where it arrived (None: it did not come to
     its end). ``limits`` is the mission's table of that name: ``settle`` (s) and any of :data:`LIMITS` (m, deg, m/s),
-    None for no limit. A limit is held when its figure is known and within it, a clearance also when there is nothing to
-    keep clear of (``obstacles`` says whether the mission has any; None: as on record). Figures that the records do not
-    contain are None. Raises ``ValueError`` for an unknown outcome or limit.
+    None for no limit. ``obstacles`` says whether the mission has any to keep clear of (None: as on record). Figures
+    that the records do not contain are None. Raises ``ValueError`` for an unknown outcome or limit.
     """
     if outcome not in list(Outcome):
         raise ValueError(f"outcome {outcome!r} is none of {', '.join(Outcome)}")
@@ -60,22 +59,28 @@ def summarise(
     tilt = payload_tilt_max(run)
     clearance = _least(run.clearance[in_air(run)]) if run.barriers and run.number_of_uavs else None
     separation = _least(run.uav_separation()) if run.number_of_uavs > 1 else None
-    has_barriers = bool(run.barriers) or bool(obstacles)
     landing = landing_figures(run)
-    figures = {
-        "position_rmse": rmse["total"],
-        "payload_tilt_deg": max((angle for angle in tilt.values() if angle is not None), default=None),
-        "clearance": clearance,
-        "uav_separation": separation,
-        "touchdown_speed": None if landing is None else landing["speed_mps"],
-        "arrival": None if arrival is None else arrival.largest,
-    }
+    contacts = None if run.contacts is None else onsets(run.contacts)
+    rows = result_rows(
+        {
+            "clearance": clearance,
+            "position_rmse": rmse["total"],
+            "payload_tilt_deg": max((angle for angle in tilt.values() if angle is not None), default=None),
+            "arrival": None if arrival is None else arrival.largest,
+            "uav_separation": separation,
+            "touchdown_speed": None if landing is None else landing["speed_mps"],
+            "contacts": contacts,
+        },
+        bounds,
+        has_barriers=bool(run.barriers) or bool(obstacles),
+    )
     summary: dict[str, Any] = _rounded(
         {
             "format": FORMAT,
             "completed": completed,
             "outcome": str(outcome),
             "reason": reason,
+            "result": rows,
             "source": run.source,
             "duration_s": duration_s,
             "real_time_factor": real_time_factor,
@@ -83,19 +88,16 @@ def summarise(
             "payload_tilt_max_deg": tilt,
             "clearance_min_m": clearance,
             "uav_separation_min_m": separation,
-            "contacts": None if run.contacts is None else onsets(run.contacts),
+            "contacts": contacts,
             "landing": landing,
             "step_time_ms": _step_times(run.steps),
             "step_parts_ms": _step_parts(run.steps),
             "solver": _solver(run.steps),
             "safety": safety_figures(run),
             "limits": {
-                name: {
-                    "value": figures[name],
-                    "limit": limit,
-                    "held": _held(name, figures[name], limit, has_barriers),
-                }
-                for name, limit in bounds.items()
+                row["name"]: {key: row[key] for key in ("value", "limit", "held")}
+                for row in rows
+                if row["limit"] is not None
             },
         }
     )
@@ -186,12 +188,6 @@ def _percentile(values: Array, percent: float) -> float | None:
 def _least(values: Array) -> float | None:
     values = values[np.isfinite(values)]
     return float(np.min(values)) if values.size else None
-
-
-def _held(name: str, figure: float | None, limit: float, barriers: bool) -> bool:
-    if figure is None:
-        return name == "clearance" and not barriers
-    return figure >= limit if name in ("clearance", "uav_separation") else figure <= limit
 
 
 def _rounded(value: Any) -> Any:

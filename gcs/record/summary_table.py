@@ -12,6 +12,8 @@ from gcs.record.outcome import Outcome
 from gcs.record.summary import within_limits
 
 _COLOUR_OF_OUTCOME = {Outcome.COMPLETED: "green", Outcome.INTERRUPTED: "yellow", Outcome.ABORTED: "yellow"}
+_DIGITS = {"m": 3, "deg": 1, "m/s": 2, "": 0}
+"""Digits after the point by unit."""
 
 
 def print_summary(
@@ -55,27 +57,17 @@ def _result(summary: Mapping[str, Any]) -> Text:
 
 
 def _figures(summary: Mapping[str, Any]) -> Table:
-    """Return what a flight is judged by."""
-    limits, tilt = summary["limits"], summary["payload_tilt_max_deg"]
+    """Return what a flight is judged by: what is known, and what should be."""
     table = _table()
-
-    def row(title: str, value: float | None, digits: int, unit: str, limit: str, least: bool = False) -> None:
-        cells: list[str | Text] = [title, _number(value, digits, unit)]
-        if limit in limits:
-            verdict = Text("held", style="green") if limits[limit]["held"] else Text("NOT HELD", style="bold red")
-            cells += [f"at {'least' if least else 'most'} {limits[limit]['limit']:g} {unit}", verdict]
+    for row in summary["result"]:
+        value, unit, held = row["value"], row["unit"], row["held"]
+        if value is None and held is not False:
+            continue
+        cells: list[str | Text] = [row["what"], _number(value, _DIGITS[unit], unit)]
+        if held is not None:
+            verdict = Text("held", style="green") if held else Text("NOT HELD", style="bold red")
+            cells += [f"{row['bound']} {row['limit']:g} {unit}", verdict]
         table.add_row(*cells)
-
-    if summary["clearance_min_m"] is not None or not limits.get("clearance", {"held": True})["held"]:
-        row("least clearance", summary["clearance_min_m"], 3, "m", "clearance", least=True)
-    row("position error, RMS", summary["position_rmse_m"]["total"], 3, "m", "position_rmse")
-    # One limit holds for all three angles.
-    angles = [angle for angle in tilt.values() if angle is not None]
-    row("largest payload angle", max(angles, default=None), 1, "deg", "payload_tilt_deg")
-    if "arrival" in limits:
-        row("waypoints missed by", limits["arrival"]["value"], 3, "m", "arrival")
-    row("least distance of two UAVs", summary["uav_separation_min_m"], 3, "m", "uav_separation", least=True)
-    row("contacts", summary["contacts"], 0, "", "")
     return table
 
 

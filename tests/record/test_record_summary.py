@@ -61,6 +61,10 @@ def run(folder):
 def test_summary_agrees_with_values_computed_by_hand(run):
     summary = summarise(run, limits={"settle": 2.0})
     parts = summary.pop("step_parts_ms")
+    assert {row["name"]: row["value"] for row in summary.pop("result")} == {
+        "clearance": None, "position_rmse": 0.05, "payload_tilt_deg": 3.0, "arrival": None, "uav_separation": 0.75,
+        "touchdown_speed": None, "contacts": 3,
+    }  # fmt: skip
     assert summary == {
         "format": FORMAT,
         "completed": True,
@@ -115,6 +119,15 @@ def test_summary_lists_violated_limits(run):
         "clearance": entry(None, 0.3, True),
         "uav_separation": entry(0.75, 0.7, True),
     }
+    assert [tuple(row.values()) for row in summary["result"]] == [
+        ("clearance", "least clearance", None, "m", "at least", 0.3, True),
+        ("position_rmse", "position error, RMS", 0.05, "m", "at most", 0.06, True),
+        ("payload_tilt_deg", "largest payload angle", 3.0, "deg", "at most", 2.9, False),
+        ("arrival", "waypoints missed by", None, "m", "at most", None, None),
+        ("uav_separation", "least distance of two UAVs", 0.75, "m", "at least", 0.7, True),
+        ("touchdown_speed", "touchdown speed", None, "m/s", "at most", None, None),
+        ("contacts", "contacts", 3, "", "at most", None, None),
+    ]
     assert not within_limits(summary)
     assert within_limits(summarise(run, limits={"settle": 2.0, "position_rmse": 0.06}))
     # A mission with obstacles of which the records know nothing does not hold its clearance.
@@ -129,6 +142,8 @@ def test_summary_lists_violated_limits(run):
     assert rows["position error, RMS"][-7:] == ["0.050", "m", "at", "most", "0.06", "m", "held"]
     assert rows["largest payload angle"][-8:] == ["3.0", "deg", "at", "most", "2.9", "deg", "NOT", "HELD"]
     assert rows["least distance of two UAVs"][-7:] == ["0.750", "m", "at", "least", "0.7", "m", "held"]
+    assert rows["contacts"][-1] == "3"
+    assert not {"least clearance", "waypoints missed by", "touchdown speed"} & rows.keys()
     assert "poster.png" in text and str(run) in text and len(text.splitlines()) <= 10
     details = printed(summary, run, details=True)
     assert set(text.splitlines()[:-1]) <= set(details.splitlines())
