@@ -18,11 +18,17 @@ CONTROLLERS = ("idc", "mpc", "paper")
 _DISTRIBUTION = "cooplift"
 
 
+class _Help(RawDescriptionRichHelpFormatter):
+    """Texts are printed as they are: brackets name extras."""
+
+    help_markup = text_markup = False
+
+
 class Parser(argparse.ArgumentParser):
     """A parser that raises :class:`UnusableInput` of one line, without usage, and takes no abbreviated options."""
 
     def __init__(self, **keywords: Any) -> None:
-        super().__init__(**{"allow_abbrev": False, "formatter_class": RawDescriptionRichHelpFormatter, **keywords})
+        super().__init__(**{"allow_abbrev": False, "formatter_class": _Help, **keywords})
 
     def error(self, message: str) -> NoReturn:
         """Raise the error; ``--help`` prints the details."""

@@ -173,6 +173,13 @@ def test_version_is_printed_with_the_name(program, main, capfd):
     assert capfd.readouterr().out == f"{program} {metadata.version('cooplift')} (cooplift)\n"
 
 
+@pytest.mark.parametrize(("command", "extra"), [("faults", "cooplift[parquet]"), ("export", "cooplift[ulog]")])
+def test_help_names_the_extra_that_is_needed(command, extra, capfd):
+    with pytest.raises(SystemExit):
+        gcs.app.cli.main([command, "--help"])
+    assert extra in capfd.readouterr().out
+
+
 def test_check_reads_a_mission_for_another_number_of_vehicles(capfd):
     assert gcs.app.cli.main(["check", str(HOP), "--vehicles", "6"]) == 0
     assert "6 vehicles" in capfd.readouterr().out
