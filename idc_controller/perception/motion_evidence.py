@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.perception.motion_evidence_kernels import count_rays
+from idc_controller.perception.motion_evidence_kernels import FrameRays, Places, by_sector, count_rays
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.surfaces.points import SurfacePoints
@@ -60,6 +60,33 @@ class PartOfScan(NamedTuple):
         return PartOfScan(self.uav, self.unexplained + other.unexplained, self.explained + other.explained)
 
 
+class Frame(NamedTuple):
+    """Scans of one frame."""
+
+    uavs: Sequence[int]
+    rays: FrameRays
+
+    @classmethod
+    def of(cls, scans: Sequence[PlacedScan]) -> Frame:
+        """Return the frame of some scans, or of none."""
+        if not scans:
+            return NO_SCANS
+        ends, returned, first = zip(*(by_sector(scan.rays) for scan in scans), strict=True)
+        begins = np.cumsum([0, *map(len, ends[:-1])])
+        return cls(
+            [scan.uav for scan in scans],
+            FrameRays(
+                np.array([scan.origin for scan in scans]), np.array([scan.rays.sigmas for scan in scans]),
+                np.concatenate(ends), np.concatenate(returned), np.array(first) + begins[:, None],
+            ),
+        )  # fmt: skip
+
+
+_NONE = np.empty((0, 3))
+_NOWHERE = Places(_NONE, np.empty(0), _NONE)
+NO_SCANS = Frame((), FrameRays(_NONE, _NONE, _NONE, np.empty(0, dtype=bool), np.empty((0, 1), dtype=np.int64)))
+
+
 class MotionEvidence:
     """Evidence of one body. Times in s, NED, m."""
 
@@ -81,7 +108,7 @@ class MotionEvidence:
         self,
         points: SurfacePoints,
         parts: Sequence[PartOfScan],
-        scans: Sequence[PlacedScan],
+        frame: Frame,
         settings: StandingMapSettings,
     ) -> None:
         """Take one frame.
@@ -89,20 +116,20 @@ class MotionEvidence:
         Args:
             points: of the body.
             parts: what the map says of them.
-            scans: all of the frame.
+            frame: its scans.
             settings: of the map, on false returns and rays that pass what is seen free.
         """
         of_uav: dict[int, PartOfScan] = {}
         for part in parts:
             of_uav[part.uav] = part if part.uav not in of_uav else part.joined(of_uav[part.uav])
         variances = points.noise**2 + points.pose_variance
-        earlier = self._earlier(points.time)
-        surface = self._normals(points.points)
-        for scan in scans:
-            ratio = self._ratio_of_points(of_uav[scan.uav], settings) if scan.uav in of_uav else 0.0
-            self.nats = max(self.nats + ratio + self._ratio_of_rays(scan, earlier), 0.0)
-            of_others = (points.origins != scan.origin).any(axis=1)
-            ends, passes = _shares(scan, (points.points[of_others], variances[of_others], surface[of_others]))
+        here = Places(np.ascontiguousarray(points.points), variances, self._normals(points.points))
+        sensors = np.ascontiguousarray(points.origins)
+        counts = count_rays(frame.rays, self._earlier(points.time), here, sensors, _BESIDE, _SIGMAS).tolist()
+        for uav, (ends, passes, ends_of_others, passes_of_others) in zip(frame.uavs, counts, strict=True):
+            ratio = self._ratio_of_points(of_uav[uav], settings) if uav in of_uav else 0.0
+            self.nats = max(self.nats + ratio + self._ratio_of_rays(*_shares(ends, passes)), 0.0)
+            ends, passes = _shares(ends_of_others, passes_of_others)
             self._ends += ends
             self._passes += passes
         self._frames.append((points.time, points.points, variances))
@@ -121,25 +148,21 @@ class MotionEvidence:
             return math.log(_UNEXPLAINED / by_chance)
         return math.log((1.0 - _UNEXPLAINED) / (1.0 - by_chance))
 
-    def _ratio_of_rays(self, scan: PlacedScan, earlier: tuple[Array, Array, Array]) -> float:
-        ends, passes = _shares(scan, earlier)
+    def _ratio_of_rays(self, ends: float, passes: float) -> float:
+        """Return the ratio by the shares of the rays through its earlier places that end there, and that pass."""
         # Where it has left, half of those that would have met it pass as well.
         return passes * math.log(0.5 * (1.0 + self._passing) / self._passing) + ends * math.log(0.5)
 
-    def _earlier(self, time: float) -> tuple[Array, Array, Array]:
-        """Return the places of its earlier points (m, 3), their variances (m,) (m2) and normals there (m, 3)."""
+    def _earlier(self, time: float) -> Places:
+        """Return the places of its earlier points."""
         chosen = [(places, variances) for at, places, variances in self._frames if time - at > _APART]
         if not chosen:
-            return np.empty((0, 3)), np.empty(0), np.empty((0, 3))
+            return _NOWHERE
         earlier = np.concatenate([places for places, _ in chosen])
-        return earlier, np.concatenate([v for _, v in chosen]), self._normals(earlier)
+        return Places(earlier, np.concatenate([v for _, v in chosen]), self._normals(earlier))
 
 
-def _shares(scan: PlacedScan, places: tuple[Array, Array, Array]) -> tuple[float, float]:
-    """Return of the rays of a scan that meet places which share ends there, and which passes; 0 and 0 if none does."""
-    counts = np.zeros(2)
-    if len(places[0]):
-        count_rays(scan.rays, *scan.rays_by_sector, *places, _BESIDE, _SIGMAS, counts)
-    ends, passes = counts.tolist()
+def _shares(ends: float, passes: float) -> tuple[float, float]:
+    """Return the shares of the rays that end, and that pass; 0 and 0 if there is none."""
     met = max(ends + passes, 1.0)
     return ends / met, passes / met

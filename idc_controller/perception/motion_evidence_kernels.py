@@ -1,15 +1,43 @@
 """Rays through the places where points of a body were, compiled."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from idc_controller.arrays import Array, Array1, Array2, Indices1, Mask1
+from idc_controller.arrays import Array, Array1, Array2, Indices1, Indices2, Mask1
 from idc_controller.compiled import inlined, kernel
 from idc_controller.perception.voxel_kernels import Rays
 
 _SECTORS = 128
 """Of the bearing, about a sensor."""
+
+
+class FrameRays(NamedTuple):
+    """The rays of all S scans of a frame, those of each in the order of their bearings. SI units, NED."""
+
+    origins: Array2
+    """Places of the sensors (S, 3)."""
+    sigmas: Array2
+    """Standard deviations of range (m), position (m) and attitude (rad) (S, 3)."""
+    ends: Array2
+    """Ends of the rays (R, 3)."""
+    returned: Mask1
+    """Which of them are returns (R,)."""
+    first: Indices2
+    """First ray of each sector of each scan, then the one after the last of the scan."""
+
+
+class Places(NamedTuple):
+    """Places of points of a body."""
+
+    places: Array2
+    """(m, 3), NED (m)."""
+    variances: Array1
+    """Of each on any axis (m,) (m2)."""
+    normals: Array2
+    """Unit normals of the surface at each (m, 3); zero where it is not known: then it is taken to be turned by up to
+    45 deg from a ray."""
 
 
 @inlined
@@ -81,34 +109,21 @@ def _meeting(
     return False, passes
 
 
-@kernel
-def count_rays(
-    rays: Rays,
-    ends: Array2,
-    returned: Mask1,
-    first: Indices1,
-    places: Array2,
-    variances: Array1,
-    normals: Array2,
+@inlined
+def _count(
+    frame: FrameRays,
+    scan: int,
+    places: Array,
+    variances: Array,
+    normals: Array,
     beside: float,
     deviations: float,
-    counts: Array1,
+    counts: Array,
 ) -> None:
-    """Count the rays of a scan that end where points of a body were, and those that pass through there.
-
-    Args:
-        rays: of the scan.
-        ends, returned, first: the same by their bearings, see :func:`by_sector`.
-        places: of the points (m, 3).
-        variances: of each on any axis (m,) (m2).
-        normals: unit normals of the surface at each (m, 3); zero where it is not known: then it is taken to be turned
-            by up to 45 deg from a ray.
-        beside: distance of a ray from a point up to which it passes through the place of that (m).
-        deviations: standard deviations within which it ends there.
-        counts: of rays that end there, and that pass (2,), written to.
-    """
-    origin, sigmas = rays.origin, rays.sigmas
-    counts[:] = 0.0
+    """Write into ``counts`` (2,) how many rays of a scan end at the places, and how many pass."""
+    origin, sigmas, first, ends, returned = (
+        frame.origins[scan], frame.sigmas[scan], frame.first[scan], frame.ends, frame.returned,
+    )  # fmt: skip
     if not places.shape[0]:
         return
     middle, radius, level = np.zeros(3), 0.0, 0.0
@@ -157,3 +172,34 @@ def count_rays(
                 counts[0] += 1.0
             elif passes:
                 counts[1] += 1.0
+
+
+@kernel
+def count_rays(
+    frame: FrameRays, earlier: Places, points: Places, sensors: Array2, beside: float, deviations: float
+) -> Array2:
+    """Count the rays of each scan that end where points of a body were, and those that pass through there.
+
+    Args:
+        frame: rays of the scans.
+        earlier: where points of the body were earlier.
+        points: where they are in this frame.
+        sensors: places from which those were seen (n, 3).
+        beside: distance of a ray from a point up to which it passes through the place of that (m).
+        deviations: standard deviations within which it ends there.
+
+    Returns:
+        Rays that end at the earlier places, that pass these, and the same for the points that other sensors saw
+        (S, 4).
+    """
+    counts = np.zeros((frame.origins.shape[0], 4))
+    of_others = np.empty(len(sensors), np.bool_)
+    for scan in range(counts.shape[0]):
+        _count(frame, scan, earlier.places, earlier.variances, earlier.normals, beside, deviations, counts[scan, :2])
+        for i in range(len(sensors)):
+            of_others[i] = (sensors[i] != frame.origins[scan]).any()
+        _count(
+            frame, scan, points.places[of_others], points.variances[of_others], points.normals[of_others],
+            beside, deviations, counts[scan, 2:],
+        )  # fmt: skip
+    return counts

@@ -104,10 +104,10 @@ class MotionImm:
         sigma = np.array(s.singer_accelerations)
         self.P[2 : 2 + len(sigma), :, 2, 2] = sigma[:, None] ** 2
         self.weight = np.full(m, 1.0 / m)
-
-    @property
-    def state(self) -> tuple[Array, Array, Array]:
+        self.state = self._mixture()
         """Position (NED, m), velocity and acceleration (3,) of the mixture."""
+
+    def _mixture(self) -> tuple[Array, Array, Array]:
         mean = self.weight @ self.x.reshape(len(self.weight), 9)
         position, velocity, acceleration = mean.reshape(3, 3).T
         return position, velocity, acceleration
@@ -137,7 +137,7 @@ class MotionImm:
         F, Q = self.models.step(dt)
         change = min(self.models.settings.transition_rate * dt, 0.5)
         self.weight, self.x, self.P = advanced(self.weight, self.x, self.P, F, Q, change)
-        self.time = time
+        self.time, self.state = time, self._mixture()
 
     def update(self, position: Array, variance: Array) -> float:
         """Correct by a ``position`` (3,) (m) with ``variance`` (3,) (m2); an axis that is nan is not measured.
@@ -147,11 +147,13 @@ class MotionImm:
         """
         position, variance = np.ascontiguousarray(position), np.ascontiguousarray(variance)
         self.weight, self.x, self.P, squared = updated(self.weight, self.x, self.P, position, variance)
+        self.state = self._mixture()
         return squared
 
     def shift(self, by: Array) -> None:
         """Shift the tracked point ``by`` (3,) (m)."""
         self.x[:, :, 0] += by
+        self.state = self._mixture()
 
     def predict(self, times: Array) -> tuple[Array, Array]:
         """Return mean (K, 3) (m) and covariance (K, 3, 3) (m2) of the position at ``times`` (K,) (s)."""

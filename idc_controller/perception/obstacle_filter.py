@@ -171,6 +171,10 @@ class ObstacleFilter:
             mean, covariance = self._imm.predict(np.array([self._imm.time + self.settings.manoeuvre.horizon]))
             self.manoeuvre.add_prediction(mean[0], math.sqrt(float(np.trace(covariance[0]))))
 
+    def centres(self, times: Array) -> Array:
+        """Return the predicted centre (K, 3) (NED, m) at ``times`` (K,) (s)."""
+        return self._imm.predict(times)[0] + self._surface.offset
+
     def predict(self, times: Array) -> tuple[Array, Array]:
         """Return the predicted centre (K, 3) (NED, m) at ``times`` (K,) (s), and the growth of the body (K,) (m)."""
         mean, covariance = self._imm.predict(times)

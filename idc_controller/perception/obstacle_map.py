@@ -14,6 +14,7 @@ from idc_controller.geometry.shape import Shape
 from idc_controller.perception.association import associate, gating_shape
 from idc_controller.perception.clusters import Cluster, Segmentation, frames, return_sigma, shifted
 from idc_controller.perception.map_check import MapCheck
+from idc_controller.perception.motion_evidence import Frame
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.range_sensors import SensorModel
@@ -73,6 +74,8 @@ class ObstacleMap:
         self._check = MapCheck(self._standing.obstacles, self._view_range, self.seen.map.is_standing, s)
         self._sigmas = math.sqrt(float(upper_quantile(s.standing_map.false_alarm, 3)))
         self._time = -math.inf
+        self._viewing: list[tuple[Array, Array]] = []
+        """Poses of the vehicles with valid range sensors whose telemetry comes in."""
         self._deleted: list[str] = []
 
     def update(
@@ -92,6 +95,9 @@ class ObstacleMap:
             self.seen.map.release(moved, self._settings.association.map_gate)
             self.seen.update()
             self._tracks.absorb(self.seen.map.is_standing, now - self._settings.standing_map.settling_time)
+        timeout, poses = self._settings.retention.link_timeout, self.placement.poses
+        last = (poses.last_pose(uav, now, timeout) for uav in self._valid_uavs()) if self.tracks else ()
+        self._viewing = [pose for pose in last if pose is not None]
         self._deleted += self._tracks.retain(now, self.sensing_lost, self._in_field_of_view)
 
     @property
@@ -166,8 +172,9 @@ class ObstacleMap:
         found = []
         for track in self.tracks:
             if track.is_obstacle and track.filter is not None:
-                position, growth = track.centre(time)
-                found.append(TrackEstimate(time, track.name, track.shape, position, track.velocity, growth))
+                now = track.predict(np.array([time]), time)
+                position, growth = now.positions[0], float(now.growth[0])
+                found.append(TrackEstimate(time, track.name, now.shape, position, track.velocity, growth))
         return found
 
     # Inside
@@ -244,9 +251,10 @@ class ObstacleMap:
                     unassigned.append(cluster)
             elif body < n:
                 assigned[body].append(cluster)
-        self._tracks.update(assigned, usable)
+        frame = Frame.of(usable)
+        self._tracks.update(assigned, frame)
         self._tracks.merge(clusters, bodies, distances, standing)
-        self._tracks.begin(unassigned, usable)
+        self._tracks.begin(unassigned, frame)
 
     def _distances(self, clusters: list[Cluster], time: float) -> tuple[Array, Array]:
         """Return mean distances of the clusters from tracks and standing obstacles (m), and the gates of those (m)."""
@@ -273,13 +281,8 @@ class ObstacleMap:
 
         It is near, its middle within the elevations of the rays, and nothing that stands hides it.
         """
-        timeout, poses = self._settings.retention.link_timeout, self.placement.poses
-        centre, _ = track.centre(self._time)
-        near = [
-            pose[0]
-            for uav in self._valid_uavs()
-            if (pose := poses.last_pose(uav, self._time, timeout)) is not None and self._rays.are_towards(centre, *pose)
-        ]
+        centre = track.centre(self._time)
+        near = [place for place, attitude in self._viewing if self._rays.are_towards(centre, place, attitude)]
         if not near:
             return False
         sensors = np.array(near)

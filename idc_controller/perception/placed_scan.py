@@ -5,8 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from idc_controller.arrays import Array, Indices, Mask
-from idc_controller.perception.motion_evidence_kernels import by_sector
+from idc_controller.arrays import Array
 from idc_controller.perception.voxel_kernels import Rays
 
 
@@ -48,11 +47,6 @@ class PlacedScan:
     """The vehicle (0 .. N-1)."""
     up: Array = field(default_factory=_up)
     """Upward axis of its body frame (3,)."""
-
-    @cached_property
-    def rays_by_sector(self) -> tuple[Array, Mask, Indices]:
-        """All rays by their bearings, see :func:`~idc_controller.perception.motion_evidence_kernels.by_sector`."""
-        return by_sector(self.rays)
 
     @cached_property
     def rays(self) -> Rays:

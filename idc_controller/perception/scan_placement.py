@@ -15,6 +15,7 @@ from idc_controller.perception.ray_pattern import RayPattern, scan_index
 from idc_controller.perception.scan_placement_kernels import free_ends, placed_returns
 from idc_controller.perception.settings import ScanSettings
 from idc_controller.rotations import rotation_from_quaternion
+from idc_controller.rotations_float import into_body
 
 _OFF_RAY = 0.25
 """Share of the mean angle between rays by which a return may lie off the next one, to be that ray's surely."""
@@ -40,8 +41,9 @@ class SensorRays(NamedTuple):
 
         From a vehicle at a ``place`` (3,) (NED, m) with an ``attitude`` (4,), body to world.
         """
-        way = rotation_from_quaternion(attitude).T @ (point - place)
-        elevation = math.atan2(-way[2], math.hypot(way[0], way[1]))
+        (w, x, y, z), (north, east, down) = attitude.tolist(), (point - place).tolist()
+        forward, right, below = into_body((w, x, y, z), (north, east, down))
+        elevation = math.atan2(-below, math.hypot(forward, right))
         return self.pattern.elevation_min <= elevation <= self.pattern.elevation_max
 
 

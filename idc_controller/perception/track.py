@@ -9,10 +9,9 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.shape import Shape
-from idc_controller.perception.motion_evidence import MotionEvidence, PartOfScan
+from idc_controller.perception.motion_evidence import NO_SCANS, Frame, MotionEvidence, PartOfScan
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.obstacle_filter import ObstacleFilter
-from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.surfaces.points import SurfacePoints, joined
 from idc_controller.perception.visited_region import VisitedRegion
@@ -66,8 +65,6 @@ class Track:
     """Shape of an obstacle of the map."""
     map_centre: Array = field(default_factory=lambda: np.zeros(3))
     """Its place on the map (3,) (NED, m), until it is detected."""
-    scatter: float = 0.0
-    """Variance of its points beyond their sensors' (m2), until it is detected."""
     filter: ObstacleFilter | None = None
     detections: Detections = field(default_factory=lambda: Detections())
     has_moved: bool = False
@@ -79,31 +76,32 @@ class Track:
     overlaps: dict[str, int] = field(default_factory=dict)
     """Frames in a row in which its points belonged to another track as well."""
 
-    def update(
-        self, parts: list[SurfacePoints], explained: Sequence[PartOfScan] = (), scans: Sequence[PlacedScan] = ()
-    ) -> None:
+    def update(self, parts: list[SurfacePoints], explained: Sequence[PartOfScan] = (), frame: Frame = NO_SCANS) -> None:
         """Take the points of one frame, by all vehicles that detect it.
 
         Args:
             parts: its points by vehicle.
             explained: what the map says of them, by vehicle.
-            scans: all of the frame.
+            frame: all scans of it.
         """
         points = joined(parts)
         if self.filter is None:
-            self.filter = ObstacleFilter(
-                self.models, points, self.map_shape, self.settings.tracking, scatter=self.scatter
-            )
+            self.filter = ObstacleFilter(self.models, points, self.map_shape, self.settings.tracking)
         else:
             self.filter.update(points)
-        self.detections.add(points, len(parts), self.filter.state[0], self.filter.time)
+        self.add(points, len(parts), explained, frame)
+
+    def add(self, points: SurfacePoints, clusters: int, explained: Sequence[PartOfScan], frame: Frame) -> None:
+        """Take for detected what the filter has taken: ``points`` of as many ``clusters``, as in :meth:`update`."""
+        assert self.filter is not None
+        self.detections.add(points, clusters, self.filter.state[0], self.filter.time)
         s, evidence = self.settings.standing_map, self.detections.evidence
         if not self.filter.may_move:
             # Not one body: clusters of several that stand were joined. It takes new evidence to be one.
             self.has_moved = False
             evidence.reset()
         elif not self.has_moved:
-            evidence.add(points, explained, scans, s)
+            evidence.add(points, explained, frame, s)
             self.has_moved = evidence.nats > -math.log(s.false_alarm) and self.filter.is_moving(s.false_alarm)
         self.is_deleted = False
 
@@ -170,7 +168,7 @@ class Track:
         shape, centre = visited.box(self.shape, now - retention.visited_memory)
         count = len(times)
         region = PredictedObstacle(f"{self.name} region", shape, np.tile(centre, (count, 1)), np.zeros(count), True)
-        place, _ = self.centre(now)
+        place = self.centre(now)
         if self.filter.manoeuvre.is_unpredictable and visited.holds(place, now - retention.visited_before):
             return [region]
         return [region, replace(self.predict(times, now), may_leave=True)]
@@ -181,14 +179,13 @@ class Track:
             positions = np.tile(self.map_centre, (len(times), 1))
             growth = np.full(len(times), self.settings.retention.undetected_growth)
             return PredictedObstacle(self.name, self.shape, positions, growth)
-        if self._coasts_at_rest(now):
-            times = times - (now - self.detections.last)
-        return PredictedObstacle(self.name, self.shape, *self.filter.predict(times))
+        return PredictedObstacle(self.name, self.shape, *self.filter.predict(self._coasted(times, now)))
 
-    def centre(self, time: float) -> tuple[Array, float]:
-        """Return centre (3,) (NED, m) and growth (m) at ``time`` (s), as estimated then."""
-        predicted = self.predict(np.array([time]), time)
-        return predicted.positions[0], float(predicted.growth[0])
+    def centre(self, time: float) -> Array:
+        """Return the centre (3,) (NED, m) at ``time`` (s), as estimated then."""
+        if self.filter is None:
+            return self.map_centre
+        return np.asarray(self.filter.centres(self._coasted(np.array([time]), time))[0])
 
     def expected(self, time: float) -> tuple[Array, float]:
         """Return the expected centre (3,) (NED, m) at the time of a new frame, and its standard deviation (m).
@@ -201,6 +198,10 @@ class Track:
         if not self._coasts_at_rest(time):
             self.filter.advance(time)
         return self.filter.state[0], min(self.filter.position_sigma, largest)
+
+    def _coasted(self, times: Array, now: float) -> Array:
+        """Return the times (K,) (s) for which the filter is asked: one that coasts at rest stays as it was."""
+        return times - (now - self.detections.last) if self._coasts_at_rest(now) else times
 
     def _coasts_at_rest(self, now: float) -> bool:
         return self.is_static and now - self.detections.last > self.settings.retention.coasting_after

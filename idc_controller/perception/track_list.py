@@ -10,10 +10,11 @@ from idc_controller.arrays import Array, Mask
 from idc_controller.geometry.obstacles import Bodies, PointGroups
 from idc_controller.perception.association import gating_shape
 from idc_controller.perception.clusters import Cluster
-from idc_controller.perception.motion_evidence import MotionEvidence, Normals, PartOfScan, unknown_normals
+from idc_controller.perception.motion_evidence import Frame, MotionEvidence, Normals, PartOfScan, unknown_normals
 from idc_controller.perception.motion_imm import MotionModels
-from idc_controller.perception.placed_scan import PlacedScan
+from idc_controller.perception.obstacle_filter import ObstacleFilter
 from idc_controller.perception.settings import PerceptionSettings
+from idc_controller.perception.surfaces.points import SurfacePoints, joined
 from idc_controller.perception.track import Detections, Track
 
 
@@ -37,22 +38,24 @@ class TrackList:
         self._next_number = 1
         self._scatter = 0.0
 
-    def update(self, assigned: dict[int, list[Cluster]], scans: Sequence[PlacedScan]) -> None:
-        """Update tracks by the clusters of one frame, by index of the track, and by all ``scans`` of the frame."""
+    def update(self, assigned: dict[int, list[Cluster]], frame: Frame) -> None:
+        """Update tracks by the clusters of one frame, by index of the track, and by all its scans."""
         for index, members in assigned.items():
-            self._update(self.tracks[index], members, scans)
+            self.tracks[index].update([member.surface_points for member in members], _explained(members), frame)
         # Scatter is of the sensors: new tracks begin with it.
         scatter = [t.filter.scatter for t in self.tracks if t.map_shape is None and t.filter is not None]
         self._scatter = max(scatter, default=self._scatter)
 
-    def begin(self, clusters: list[Cluster], scans: Sequence[PlacedScan]) -> None:
+    def begin(self, clusters: list[Cluster], frame: Frame) -> None:
         """Begin tracks from clusters of one frame that belong to no obstacle."""
-        for members in self._grouped(clusters):
+        for members, points, found in self._grouped(clusters):
             while f"track {self._next_number}" in self._names:
                 self._next_number += 1
-            track = self._track(f"track {self._next_number}")
+            detections = Detections(evidence=MotionEvidence(self._normals))
+            name = f"track {self._next_number}"
+            track = Track(name, self._models, self._settings, filter=found, detections=detections)
             self._next_number += 1
-            self._update(track, members, scans)
+            track.add(points, len(members), _explained(members), frame)
             self.tracks.append(track)
 
     def merge(self, clusters: list[Cluster], bodies: list[int | None], distances: Array, standing: list[str]) -> None:
@@ -162,33 +165,32 @@ class TrackList:
         for track in self.tracks:
             track.is_retained = track.is_retained or track.is_confirmed
 
-    @staticmethod
-    def _update(track: Track, members: list[Cluster], scans: Sequence[PlacedScan]) -> None:
-        explained = [PartOfScan(member.uav, member.unexplained, member.explained) for member in members]
-        track.update([member.surface_points for member in members], explained, scans)
-
-    def _track(self, name: str) -> Track:
-        detections = Detections(evidence=MotionEvidence(self._normals))
-        return Track(name, self._models, self._settings, scatter=self._scatter, detections=detections)
-
-    def _grouped(self, clusters: list[Cluster]) -> list[list[Cluster]]:
-        """Return clusters of several vehicles that lie on one surface, together."""
+    def _grouped(self, clusters: list[Cluster]) -> list[tuple[list[Cluster], SurfacePoints, ObstacleFilter]]:
+        """Return clusters of several vehicles that lie on one surface, together, with their points and a filter."""
         s = self._settings.association
-        groups: list[tuple[list[Cluster], Track]] = []
+        groups: list[tuple[list[Cluster], SurfacePoints, ObstacleFilter]] = []
         for cluster in clusters:
-            for members, trial in groups:
+            for i, (members, _, found) in enumerate(groups):
                 if any(member.uav == cluster.uav for member in members):
                     continue
-                centre, _ = trial.centre(cluster.scan.time)
-                shape = gating_shape(trial.shape, s.wall_extension)
-                points = PointGroups.of([cluster.points])
-                if Bodies([shape]).mean_distances(points, centre[None])[0, 0] < s.group_gate:
-                    members.append(cluster)
-                    trial.filter = None
-                    trial.update([member.surface_points for member in members])
+                shape = gating_shape(found.shape, s.wall_extension)
+                points, centres = PointGroups.of([cluster.points]), found.centres(np.array([cluster.scan.time]))
+                if Bodies([shape]).mean_distances(points, centres)[0, 0] < s.group_gate:
+                    groups[i] = self._group([*members, cluster])
                     break
             else:
-                trial = self._track("")
-                trial.update([cluster.surface_points])
-                groups.append(([cluster], trial))
-        return [members for members, _ in groups]
+                groups.append(self._group([cluster]))
+        return groups
+
+    def _group(self, members: list[Cluster]) -> tuple[list[Cluster], SurfacePoints, ObstacleFilter]:
+        points = joined([member.surface_points for member in members])
+        return (
+            members,
+            points,
+            ObstacleFilter(self._models, points, settings=self._settings.tracking, scatter=self._scatter),
+        )
+
+
+def _explained(members: list[Cluster]) -> list[PartOfScan]:
+    """Return what the map says of clusters."""
+    return [PartOfScan(member.uav, member.unexplained, member.explained) for member in members]

@@ -8,12 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from obstacle_scene import HERE, Scene, map_of, moving_tracks, pole, run, sphere
 
-from idc_controller.perception.motion_evidence import MotionEvidence, PartOfScan
-from idc_controller.perception.motion_evidence_kernels import by_sector, count_rays
+from idc_controller.perception.motion_evidence import Frame, MotionEvidence, PartOfScan
+from idc_controller.perception.motion_evidence_kernels import Places, count_rays
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.surfaces.points import SurfacePoints
-from idc_controller.perception.voxel_kernels import Rays
 
 MAP = StandingMapSettings()
 EVIDENT = -math.log(1e-3)
@@ -52,12 +51,16 @@ def test_counted_rays_agree_with_plain_reference(seed, count, spread, upright):
     places = origin + np.array([rng.uniform(0.3, 8.0), 0.0, 0.0]) + rng.normal(0.0, spreads, (count, 3))
     ends = places[rng.integers(count, size=60)] + rng.normal(0.0, 0.2, (60, 3))
     ends = origin + (ends - origin) * rng.uniform(0.6, 1.8, (60, 1))
-    sigmas, variances, found = np.array([0.05, 0.02, 0.004]), rng.uniform(0.001, 0.01, count), np.zeros(2)
+    sigmas, variances = np.array([0.05, 0.02, 0.004]), rng.uniform(0.001, 0.01, count)
     normals = rng.normal(size=(count, 3))
     normals *= rng.integers(2, size=(count, 1)) / np.linalg.norm(normals, axis=1)[:, None]
-    rays, body = Rays(origin, ends[:40], ends[40:], sigmas), (places, variances, normals, 0.15, 3.0)
-    count_rays(rays, *by_sector(rays), *body, found)
-    assert found.tolist() == counted(*rays, *body)
+    places_of_body, limits = Places(places, variances, normals), (0.15, 3.0)
+    scan = PlacedScan(0.0, origin, ends[:40], *sigmas.tolist(), ends[40:])
+    sensors = rng.integers(2, size=(count, 1)) * np.ones(3) + origin
+    found = count_rays(Frame.of([scan]).rays, places_of_body, places_of_body, sensors, *limits)
+    assert found[0, :2].tolist() == counted(*scan.rays, *places_of_body, *limits)
+    others = Places(*(of[sensors[:, 0] != origin[0]] for of in places_of_body))
+    assert found[0, 2:].tolist() == counted(*scan.rays, *others, *limits)
 
 
 def scan_of(returns, free=(), uav=0, time=0.0):
@@ -80,12 +83,12 @@ BEYOND = [(9.0, 0.18 * y, 0.18 * z) for y in (-1, 0, 1) for z in (-1, 0, 1)]
 def test_points_in_space_of_which_nothing_is_known_are_no_evidence_and_others_are():
     evidence, points = MotionEvidence(), points_at(FACE)
     for k in range(8):
-        evidence.add(points_at(FACE, 0.05 * k, ASIDE), [PartOfScan(0, 0, 0)], [scan_of(FACE)], MAP)
+        evidence.add(points_at(FACE, 0.05 * k, ASIDE), [PartOfScan(0, 0, 0)], Frame.of([scan_of(FACE)]), MAP)
     assert evidence.nats == 0.0
-    evidence.add(points, [PartOfScan(0, 9, 0), PartOfScan(1, 9, 0)], [scan_of([]), scan_of([], uav=1)], MAP)
+    evidence.add(points, [PartOfScan(0, 9, 0), PartOfScan(1, 9, 0)], Frame.of([scan_of([]), scan_of([], uav=1)]), MAP)
     assert evidence.nats == pytest.approx(2.0 * math.log(0.5 / MAP.false_share))
     before = evidence.nats
-    evidence.add(points, [PartOfScan(0, 4, 5)], [scan_of([])], MAP)
+    evidence.add(points, [PartOfScan(0, 4, 5)], Frame.of([scan_of([])]), MAP)
     assert evidence.nats == pytest.approx(before + math.log(0.5 / (1.0 - MAP.false_share)))
 
 
@@ -94,19 +97,19 @@ def test_points_where_space_was_seen_free_beside_what_is_thin_are_little_evidenc
     evidence = MotionEvidence()
     for k in range(8):
         scans = [scan_of(FACE), scan_of([], BEYOND, 1)]
-        evidence.add(points_at(FACE, 0.05 * k, ASIDE), [], scans, MAP)
-    evidence.add(points_at(FACE, 0.4), [PartOfScan(0, 9, 0)], [scan_of([])], MAP)
+        evidence.add(points_at(FACE, 0.05 * k, ASIDE), [], Frame.of(scans), MAP)
+    evidence.add(points_at(FACE, 0.4), [PartOfScan(0, 9, 0)], Frame.of([scan_of([])]), MAP)
     assert evidence.nats == pytest.approx(math.log(0.5 / 0.5**MAP.free_passes))
 
 
 def test_rays_through_earlier_places_of_a_body_seen_elsewhere_are_evidence():
     evidence = MotionEvidence()
     for k in range(10):
-        evidence.add(points_at(FACE, 0.1 * k, ASIDE), [], [scan_of(FACE)], MAP)
+        evidence.add(points_at(FACE, 0.1 * k, ASIDE), [], Frame.of([scan_of(FACE)]), MAP)
     assert evidence.nats == 0.0
     aside = np.add(FACE, [0.0, 2.0, 0.0])
     for k in range(6, 12):
-        evidence.add(points_at(aside, 0.1 * k + 1.0), [], [scan_of(aside, BEYOND)], MAP)
+        evidence.add(points_at(aside, 0.1 * k + 1.0), [], Frame.of([scan_of(aside, BEYOND)]), MAP)
     assert evidence.nats > EVIDENT
 
 
@@ -114,7 +117,7 @@ def test_rays_beside_what_is_thin_are_no_evidence_where_they_ever_passed_it():
     rng, evidence = np.random.default_rng(3), MotionEvidence()
     for k in range(100):
         scans = [scan_of(FACE) if rng.uniform() < 0.5 else scan_of([], BEYOND, uav) for uav in range(4)]
-        evidence.add(points_at(FACE, 0.1 * k, ASIDE), [], scans, MAP)
+        evidence.add(points_at(FACE, 0.1 * k, ASIDE), [], Frame.of(scans), MAP)
         assert evidence.nats < EVIDENT
 
 

@@ -153,7 +153,7 @@ def test_body_below_the_elevations_of_all_rays_is_out_of_view():
     [it] = [track for track in m.tracks if track.name in moving_tracks(m)]
     assert m._in_field_of_view(it)
     # By the formation's rays, which end 70 deg below the horizon.
-    centre, _ = it.centre(2.5)
+    centre = it.centre(2.5)
     for beside, in_view in ((3.0, True), (0.5, False)):
         scene.feed(m, 2.5, np.add(centre, [beside, 0.0, -5.0]), [])
         m.update(2.5)

@@ -103,7 +103,7 @@ def watch(place, make, seed, until=8.0, each=lambda t, m: None, beside=(BEHIND,)
         near = [
             track
             for track in m.tracks
-            if track.is_obstacle and np.linalg.norm((track.centre(time)[0] - body.position_in_world)[:2]) < 1.0
+            if track.is_obstacle and np.linalg.norm((track.centre(time) - body.position_in_world)[:2]) < 1.0
         ]
         if np.linalg.norm(body.position_in_world[:2] - HERE[:2]) > RANGE:
             return
