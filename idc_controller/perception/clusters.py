@@ -83,22 +83,24 @@ class Segmentation:
         if not clusters:
             return clusters, set()
         indices = np.flatnonzero(rows)[order]
+        starts = [cluster.part.start for cluster in clusters]
+        sizes = np.diff([*starts, len(order)])
+        of_parts = (np.add.reduceat(of[indices], starts, dtype=int).tolist() for of in (unexplained, explained))
         clusters = [
-            c._replace(
-                unexplained=int(unexplained[indices[c.part]].sum()), explained=int(explained[indices[c.part]].sum())
-            )
-            for c in clusters
+            c._replace(unexplained=unknown, explained=known)
+            for c, unknown, known in zip(clusters, *of_parts, strict=True)
         ]
         labels = np.full(len(scan.returns), -1)
-        for label, cluster in enumerate(clusters):
-            labels[indices[cluster.part]] = label
+        labels[indices] = np.repeat(np.arange(len(clusters)), sizes)
         bounded = bounded_clusters(scan.rays, labels, len(clusters), self._spacing, _GAP_MIN)
-        seen = set()
-        for is_bounded, cluster in zip(bounded.tolist(), clusters, strict=True):
-            points = cluster.points[:, :2]
-            is_small = float(np.ptp(points, axis=0).max()) <= self._size
-            if (is_bounded and is_small) or 2 * cluster.unexplained > len(points):
-                seen.add(cluster.number)
+        level = clusters[0].scan.points[:, :2]
+        spans = np.maximum.reduceat(level, starts) - np.minimum.reduceat(level, starts)
+        can_be_seen = bounded & (spans.max(axis=1) <= self._size)
+        seen = {
+            c.number
+            for c, is_seen, size in zip(clusters, can_be_seen.tolist(), sizes.tolist(), strict=True)
+            if is_seen or 2 * c.unexplained > size
+        }
         return clusters, seen
 
     def clusters(self, scan: PlacedScan, rows: Mask) -> list[Cluster]:

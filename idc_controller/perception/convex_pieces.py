@@ -16,7 +16,7 @@ from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.geometry.box import Wall
 from idc_controller.perception.piece_cutting import Body, cut
 from idc_controller.perception.standing_map import StandingMap, SurfaceElements
-from idc_controller.perception.upright_box import extended_box, fitted_box, reaches_out
+from idc_controller.perception.upright_box_kernels import extended_box, fitted_box, reaches_out
 from idc_controller.perception.voxel_kernels import EDGE
 
 _TRIES = 20
@@ -41,7 +41,7 @@ class Piece:
     numbers: Indices
     """Their serial numbers (n,)."""
     box: Array
-    """See :mod:`idc_controller.perception.upright_box` (8,)."""
+    """See :mod:`idc_controller.perception.upright_box_kernels` (8,)."""
     hits: float
     """Scans that had hit them when the box was computed from all of them."""
     voxels_tried: int = 0

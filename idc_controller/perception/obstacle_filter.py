@@ -12,7 +12,7 @@ from idc_controller.geometry.box import Wall
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.manoeuvre import ManoeuvreDetector
 from idc_controller.perception.motion_imm import MotionImm, MotionModels
-from idc_controller.perception.seen_points import SeenPoints
+from idc_controller.perception.seen_points_kernels import outermost, remembered
 from idc_controller.perception.settings import ObstacleFilterSettings, SurfaceSettings
 from idc_controller.perception.surfaces.flat import FlatSurface
 from idc_controller.perception.surfaces.known import KnownSurface
@@ -52,7 +52,8 @@ class ObstacleFilter:
         self._scores: dict[str, float] = {}
         self.scatter = scatter
         """Variance of the points beyond their sensors' (m2)."""
-        self._seen = SeenPoints(self.settings.seen_memory)
+        self._seen = np.empty((0, 5))
+        """Points of the last frames, see :mod:`idc_controller.perception.seen_points_kernels`."""
         self._uncovered = 0.0
         """Distance of the outermost of these outside of the fitted shape, which is then not the obstacle's (m)."""
         self._surface = surface_of(known.kind if known else "sphere", known, self.settings.surfaces)
@@ -159,9 +160,12 @@ class ObstacleFilter:
 
         The body is never less than what was seen of it, however well the shape fits each frame.
         """
-        noise = np.sqrt(points.noise**2 + points.pose_variance + points.scatter)
-        self._seen.add(points.time, points.points - self._imm.state[0], self.settings.outermost_sigmas * noise)
-        self._uncovered = self._seen.outermost(self.shape, self._surface.offset, self.settings.false_share)
+        s, time = self.settings, points.time
+        self._seen = remembered(
+            self._seen, time - s.seen_memory, time, np.ascontiguousarray(points.points), self._imm.state[0].copy(),
+            points.pose_variance, points.noise**2, points.scatter, s.outermost_sigmas,
+        )  # fmt: skip
+        self._uncovered = outermost(self._seen, self.shape.row[None], self._surface.offset, s.false_share)
 
     def _compare_predictions(self) -> None:
         """Compare an earlier prediction with the state now, and predict anew."""
@@ -215,7 +219,7 @@ class ObstacleFilter:
             old = self._imm.state[0]
             self._surface, place = tried[best]
             self._imm.shift(place - old)
-            self._seen.shift(old - place)
+            self._seen[:, 1:4] += old - place
 
     def _learn_scatter(self, unexplained: float, share: float | None = None) -> None:
         """Learn from points that lie on no shape that the sensors are worse than specified."""

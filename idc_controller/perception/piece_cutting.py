@@ -8,7 +8,7 @@ import numpy as np
 
 from idc_controller.arrays import Array, Indices
 from idc_controller.perception.standing_map import StandingMap
-from idc_controller.perception.upright_box import fitted_box
+from idc_controller.perception.upright_box_kernels import fitted_box
 
 _MOST_GAPS = 256
 """Gaps of a body that are looked at to cut it."""
@@ -20,7 +20,7 @@ class Body(NamedTuple):
     members: Indices
     """Elements whose points it covers (n,)."""
     box: Array
-    """See :mod:`idc_controller.perception.upright_box` (8,)."""
+    """See :mod:`idc_controller.perception.upright_box_kernels` (8,)."""
 
 
 def cut(standing: StandingMap, bounds: Array, members: Indices) -> list[Body]:

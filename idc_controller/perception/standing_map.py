@@ -173,7 +173,7 @@ class StandingMap:
     def gaps(self, box: Array, most: int, among: Indices = _ALL) -> Array:
         """Return the middles (n, 3) of up to ``most`` gaps in a box: seen free, with no point in the 27 voxels about.
 
-        ``box`` (8,): see :mod:`idc_controller.perception.upright_box`; ``among``: blocks that are searched.
+        ``box`` (8,): see :mod:`idc_controller.perception.upright_box_kernels`; ``among``: blocks that are searched.
         """
         return boxes.gaps_within(self._voxels, self._rules, among, box, most)
 

@@ -1,13 +1,14 @@
-"""Bounds of the points of the standing map, and gaps in upright boxes about them, compiled.
+"""Upright boxes that hold points of the standing map, compiled: bounds of the points, boxes, and gaps in them.
 
-Boxes and bounds: see :mod:`idc_controller.perception.upright_box`.
+A box is a row of 8 numbers: centre (3,), half edges along its heading, across it and vertically (m), cosine and sine of
+the heading. Bounds are rows of 6: lower (3,) and upper (3,) (m).
 """
 
 import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Array1, Array2, Indices1
+from idc_controller.arrays import Array, Array1, Array2, Indices, Indices1, Mask1
 from idc_controller.compiled import inlined, kernel
 from idc_controller.perception.voxel_kernels import (
     EDGE,
@@ -28,6 +29,97 @@ from idc_controller.perception.voxel_kernels import (
     key_corner,
     voxel,
 )
+
+_COARSE, _FINE = 18, 5
+"""Headings tried of a quarter turn, and on each side of the best of them."""
+_STEP = math.pi / 2.0 / _COARSE
+
+
+@inlined
+def _take(bounds: Array, rows: Indices, cosine: float, sine: float, ranges: Array) -> None:
+    """Extend ``ranges`` (3, 2) along a heading, across it and vertically (m) to hold ``bounds`` at some ``rows``."""
+    a, b = abs(cosine), abs(sine)
+    for row in rows:
+        x, y = (bounds[row, 0] + bounds[row, 3]) / 2.0, (bounds[row, 1] + bounds[row, 4]) / 2.0
+        p, q = (bounds[row, 3] - bounds[row, 0]) / 2.0, (bounds[row, 4] - bounds[row, 1]) / 2.0
+        u, v, du, dv = cosine * x + sine * y, cosine * y - sine * x, a * p + b * q, a * q + b * p
+        ranges[0, 0], ranges[0, 1] = min(u - du, ranges[0, 0]), max(u + du, ranges[0, 1])
+        ranges[1, 0], ranges[1, 1] = min(v - dv, ranges[1, 0]), max(v + dv, ranges[1, 1])
+        ranges[2, 0], ranges[2, 1] = min(bounds[row, 2], ranges[2, 0]), max(bounds[row, 5], ranges[2, 1])
+
+
+@inlined
+def _ranges(box: Array) -> Array:
+    """Return the ranges of a box along its heading, across it and vertically (3, 2) (m)."""
+    u, v = box[6] * box[0] + box[7] * box[1], box[6] * box[1] - box[7] * box[0]
+    ranges = np.empty((3, 2))
+    ranges[0, 0], ranges[0, 1] = u - box[3], u + box[3]
+    ranges[1, 0], ranges[1, 1] = v - box[4], v + box[4]
+    ranges[2, 0], ranges[2, 1] = box[2] - box[5], box[2] + box[5]
+    return ranges
+
+
+@inlined
+def _box(ranges: Array, cosine: float, sine: float) -> Array:
+    """Return the box (8,) with these ranges (3, 2)."""
+    box, u, v = np.empty(8), (ranges[0, 1] + ranges[0, 0]) / 2.0, (ranges[1, 1] + ranges[1, 0]) / 2.0
+    box[0], box[1], box[2] = cosine * u - sine * v, sine * u + cosine * v, (ranges[2, 1] + ranges[2, 0]) / 2.0
+    for axis in range(3):
+        box[3 + axis] = (ranges[axis, 1] - ranges[axis, 0]) / 2.0
+    box[6], box[7] = cosine, sine
+    return box
+
+
+@inlined
+def _nothing() -> Array:
+    """Return the ranges (3, 2) that hold nothing."""
+    ranges = np.empty((3, 2))
+    ranges[:, 0], ranges[:, 1] = math.inf, -math.inf
+    return ranges
+
+
+@kernel
+def fitted_box(bounds: Array2, rows: Indices1) -> Array1:
+    """Return the upright box (8,) with about the least plan view that holds ``bounds`` (E, 6) of some ``rows`` (n,).
+
+    The heading is the best of some, found to half a degree.
+    """
+    heading, least = 0.0, math.inf
+    for attempt in range(2):
+        middle = heading
+        for i in range(_COARSE if attempt == 0 else 2 * _FINE + 1):
+            tried = i * _STEP if attempt == 0 else middle + (i - _FINE) * _STEP / (2.0 * _FINE)
+            if attempt == 1 and i == _FINE:
+                continue
+            ranges = _nothing()
+            _take(bounds, rows, math.cos(tried), math.sin(tried), ranges)
+            area = (ranges[0, 1] - ranges[0, 0]) * (ranges[1, 1] - ranges[1, 0])
+            if area < least * (1.0 - 1e-9):
+                heading, least = tried, area
+    ranges = _nothing()
+    _take(bounds, rows, math.cos(heading), math.sin(heading), ranges)
+    return _box(ranges, math.cos(heading), math.sin(heading))
+
+
+@kernel
+def extended_box(box: Array1, bounds: Array2, rows: Indices1) -> Array1:
+    """Return a ``box`` (8,) extended, at its heading, to hold the ``bounds`` (E, 6) of some ``rows`` (n,)."""
+    ranges = _ranges(box)
+    _take(bounds, rows, box[6], box[7], ranges)
+    return _box(ranges, box[6], box[7])
+
+
+@kernel
+def reaches_out(box: Array1, bounds: Array2, rows: Indices1, tolerance: float) -> Mask1:
+    """Return which of ``bounds`` (E, 6), at ``rows`` (n,), reach beyond a ``box`` (8,) by over ``tolerance`` (m)."""
+    held, out = _ranges(box), np.zeros(rows.shape[0], np.bool_)
+    for i in range(rows.shape[0]):
+        ranges = _nothing()
+        _take(bounds, rows[i : i + 1], box[6], box[7], ranges)
+        for axis in range(3):
+            beyond = max(held[axis, 0] - ranges[axis, 0], ranges[axis, 1] - held[axis, 1])
+            out[i] = out[i] or beyond > tolerance
+    return out
 
 
 @kernel

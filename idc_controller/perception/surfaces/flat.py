@@ -112,8 +112,7 @@ class FlatSurface:
             if abs(turn) < 2e-3:
                 break
         q[:, 0] -= shift
-        common = float(np.mean(scan.pose_variance)) / scan.sensors
-        front_variance = (scan.noise**2 + scan.scatter) / max(int(np.count_nonzero(front)), 1) + common
+        front_variance = (scan.noise**2 + scan.scatter) / max(int(np.count_nonzero(front)), 1) + scan.common_variance
         moved, sideways = np.array([shift, 0.0, 0.0]), np.zeros(3)
         for axis in (1, 2):
             moved[axis], sideways[axis] = self._moved_along(axis, q[:, axis], scan.cut)
@@ -151,12 +150,11 @@ class FlatSurface:
         face = np.argmin(np.abs(residual), axis=1)
         shift, variance = np.zeros(3), np.full(3, self._settings.sideways_sigma**2)
         own = residual[np.arange(len(q)), face]
-        common = float(np.mean(scan.pose_variance)) / scan.sensors
         for axis in range(3):
             of_face = own[(face == axis) & np.isfinite(own)]
             if len(of_face):
                 shift[axis] = float(np.median(of_face))
-                variance[axis] = 2.0 * (scan.noise**2 + scan.scatter) / len(of_face) + common
+                variance[axis] = 2.0 * (scan.noise**2 + scan.scatter) / len(of_face) + scan.common_variance
         off = np.where(np.isfinite(own), own - shift[face], 0.5)
         own_variance = scan.noise**2 + scan.pose_variance + scan.scatter
         return Fit(

@@ -39,8 +39,7 @@ class KnownSurface:
             information = (normal.T * weight) @ normal + prior
             place = place + np.linalg.solve(information, (normal.T * weight) @ residual + prior @ (predicted - place))
         residual, _ = self._distance(scan.points - place)
-        common = float(np.mean(scan.pose_variance)) / scan.sensors
-        spread = np.diag(np.linalg.inv(information)) + common
+        spread = np.diag(np.linalg.inv(information)) + scan.common_variance
         return Fit(place, spread, score(residual, variance), unexplained(residual, variance, fitted=3))
 
     def _distance(self, offsets: Array) -> tuple[Array, Array]:

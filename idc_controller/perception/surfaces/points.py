@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -39,6 +40,11 @@ class SurfacePoints:
             self.time, self.points[part], self.origins[part], self.cut[part], self.noise, self.pose_variance[part],
             self.sensors, self.scatter,
         )  # fmt: skip
+
+    @cached_property
+    def common_variance(self) -> float:
+        """Variance on every axis that the points have in common, of their sensors' poses (m2)."""
+        return float(self.pose_variance.mean()) / self.sensors
 
     @property
     def rays(self) -> Array:

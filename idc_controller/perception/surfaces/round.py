@@ -11,6 +11,7 @@ from idc_controller.perception.surfaces.points import EndOfSurface, Fit, Surface
 from idc_controller.perception.surfaces.round_kernels import fitted_round
 
 _CLOSE_ENOUGH = 0.004  # m: a smaller last step of the search changes nothing that matters
+_ON_GROUND = 0.02  # m: standard deviation of a pole's foot from the ground
 
 
 class RoundSurface:
@@ -58,26 +59,22 @@ class RoundSurface:
 
     def fit(self, scan: SurfacePoints, predicted: Array, iterations: int = 3) -> Fit:
         """Return the place in this frame, expected at ``predicted`` (3,), and learn the shape from it."""
-        n_axes, s = self._axes, self._settings
-        prior = np.full(n_axes + 1, 1.0 / s.centre_sigma**2)
-        prior[-1] = 1.0 / (self._variance + s.radius_walk**2)
-        mean = np.append(predicted[:n_axes], self._radius)
-        theta, variances, score, unexplained = fitted_round(
-            np.ascontiguousarray(scan.points), np.ascontiguousarray(scan.origins),
-            scan.pose_variance + scan.scatter + s.model_sigma**2, mean, prior, scan.noise, scan.scatter,
+        s = self._settings
+        position, variance, radius, radius_variance, score, unexplained = fitted_round(
+            np.ascontiguousarray(scan.points), np.ascontiguousarray(scan.origins), scan.pose_variance,
+            np.ascontiguousarray(predicted), self._axes, self._radius, s.centre_sigma**2,
+            self._variance + s.radius_walk**2, scan.noise, scan.scatter, s.model_sigma**2,
             s.pole_radius_min if self._is_pole else s.sphere_radius_min, s.radius_max,
-            s.pole_end_depth, s.pole_end_share, iterations, n_axes + (self.known is None), _CLOSE_ENOUGH,
+            s.pole_end_depth, s.pole_end_share, iterations, self._axes + (self.known is None), _CLOSE_ENOUGH,
         )  # fmt: skip
-        common = float(np.mean(scan.pose_variance)) / scan.sensors
-        position = np.zeros(3)
-        position[:n_axes] = theta[:n_axes]
-        spread = np.full(3, 0.02**2)
         # Where points scatter by as much as the body is wide, their normals are no more than guesses.
-        guessed = 1.0 + s.scatter_loss * scan.scatter / theta[-1] ** 2
-        spread[:n_axes] = guessed * variances[:n_axes] + common
+        guessed = 1.0 + s.scatter_loss * scan.scatter / radius**2
+        spread = guessed * variance + scan.common_variance
+        if self._is_pole:
+            spread[2] = _ON_GROUND**2
         if self.known is None:
-            self._radius = float(theta[-1])
-            self._variance = max(float(variances[-1]), s.radius_sigma_min**2)
+            self._radius = radius
+            self._variance = max(radius_variance, s.radius_sigma_min**2)
             if self._is_pole:
                 self._top.update(-scan.points[:, 2], scan.cut)
         return Fit(position, spread, score, unexplained)

@@ -93,11 +93,15 @@ def _residuals(
 def fitted_round(
     points: Array2,
     origins: Array2,
-    own_variance: Array1,
-    mean: Array1,
-    prior: Array1,
+    pose_variance: Array1,
+    expected: Array1,
+    axes: int,
+    radius: float,
+    prior_variance: float,
+    radius_variance: float,
     noise: float,
     scatter: float,
+    model_variance: float,
     radius_min: float,
     radius_max: float,
     end_depth: float,
@@ -105,17 +109,21 @@ def fitted_round(
     iterations: int,
     free: int,
     close_enough: float,
-) -> tuple[Array1, Array1, float, float]:
+) -> tuple[Array1, Array1, float, float, float, float]:
     """Fit a sphere or a pole to n points.
 
     Args:
         points: on the surface (n, 3).
         origins: of the sensors that detected them (n, 3).
-        own_variance: of each point on every axis (n,), beside its sensor's noise (m2).
-        mean: expected ``theta`` (3,) for a pole, (4,) for a sphere.
-        prior: information on each of it.
+        pose_variance: of each point on every axis (n,), by the pose of its sensor (m2).
+        expected: place of the centre (3,).
+        axes: 3 for a sphere, 2 for a pole.
+        radius: expected (m).
+        prior_variance: of the place on every axis (m2).
+        radius_variance: of the radius (m2).
         noise: standard deviation along the line of sight (m).
         scatter: variance of the points beyond that of their sensors (m2).
+        model_variance: of the surface about the shape (m2).
         radius_min, radius_max: bounds of the radius (m).
         end_depth, end_share: depth in a pole's side (m), and share of the radius beside it, from which on a point
             lies on its end.
@@ -124,11 +132,13 @@ def fitted_round(
         close_enough: size of a last step (m).
 
     Returns:
-        ``theta``, its variances, and score and unexplained variance as in
-        :class:`~idc_controller.perception.surfaces.points.Fit`.
+        Place of the centre (3,), its variances (3,), radius, its variance, and score and unexplained variance as in
+        :class:`~idc_controller.perception.surfaces.points.Fit`. A pole's place is on the ground, of variance 0.
     """
-    n, size = points.shape[0], mean.shape[0]
-    axes, is_pole = size - 1, size == 3
+    n, size, is_pole = points.shape[0], axes + 1, axes == 2
+    own_variance = pose_variance + scatter + model_variance
+    mean, prior = np.empty(size), np.full(size, 1.0 / prior_variance)
+    mean[:axes], mean[axes], prior[axes] = expected[:axes], radius, 1.0 / radius_variance
     theta, information, H = mean.copy(), np.empty((size, size)), np.empty((n, size))
     for _ in range(iterations):
         residual, variance = _residuals(points, origins, theta, noise, own_variance, scatter, H)
@@ -164,4 +174,6 @@ def fitted_round(
     squared = residual**2
     score = np.minimum(squared / variance, SCORE_CAP).mean()
     excess = np.median(squared) / MEDIAN_OF_SQUARE * n / max(n - free, 1) - np.median(variance)
-    return theta, variances, score, excess
+    place, spread = np.zeros(3), np.zeros(3)
+    place[:axes], spread[:axes] = theta[:axes], variances[:axes]
+    return place, spread, theta[axes], variances[axes], score, excess
