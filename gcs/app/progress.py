@@ -108,6 +108,9 @@ class FlightProgress:
 
     def __exit__(self, *_: object) -> None:
         self._live.stop()
+        # Or the flight, and with it the solvers, would live on in the cycle of this and its display, and be reported at
+        # the end of the program as leaked.
+        self._status = None
 
 
 def _flown(flown: float, end: float) -> str:
