@@ -22,7 +22,7 @@ class GrowingTables(RunTables):
         super().__init__(folder)
         self._headers: dict[str, str] = {}
         self._read: dict[str, int] = {}  # bytes
-        self._before: dict[str, int] = {}  # rows
+        self._taken: dict[str, int] = {}  # rows
 
     def __missing__(self, file: str) -> Table:
         self[file] = table = parse_table(self._folder / file, "", "")
@@ -31,13 +31,16 @@ class GrowingTables(RunTables):
 
     def grow(self) -> None:
         """Read what has been written since."""
-        for file, table in list(self.items()):
-            self._before[file] = len(table)
+        for file in list(self):
             self._append(file)
 
     def new(self) -> RunTables:
-        """Return the tables with the rows alone that the last :meth:`grow` has read; of obstacles all rows."""
-        return _NewRows(self, self._before)
+        """Return the tables with the rows alone that have not been taken; of obstacles all rows."""
+        return _NewRows(self, self._taken)
+
+    def take(self) -> None:
+        """Take all rows so far."""
+        self._taken = {file: len(table) for file, table in self.items()}
 
     def _append(self, file: str) -> None:
         path = self._folder / file
@@ -63,11 +66,11 @@ class GrowingTables(RunTables):
 class _NewRows(RunTables):
     """The rows of growing tables from a number of each on."""
 
-    def __init__(self, tables: GrowingTables, before: dict[str, int]) -> None:
-        self._tables, self._before = tables, before
+    def __init__(self, tables: GrowingTables, begins: dict[str, int]) -> None:
+        self._tables, self._begins = tables, begins
 
     def __missing__(self, file: str) -> Table:
         table = self._tables[file]
         # Where an obstacle stands, and since when, is not in its latest row.
-        self[file] = rows = table if file == OBSTACLES else table[self._before.get(file, 0) :]
+        self[file] = rows = table if file == OBSTACLES else table[self._begins.get(file, 0) :]
         return rows

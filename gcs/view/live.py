@@ -49,10 +49,12 @@ class Records:
         """Return what is new (JSON: ``header`` and ``blob`` of :class:`PageData`, ``final``); None: nothing yet."""
         self._tables.grow()
         new = read_run(self._folder, self._tables.new())
-        # Without a truth there are new rows of the estimate, unless only those of the truth are late.
+        # Without new rows of the truth those of the estimate would be taken for what was flown.
         if not len(new.time) or new.source != ("truth" if len(self._tables[TRUTH]) else "estimate"):
             return None
-        return _message(PageData(new, self._tables), final=False)
+        message = _message(PageData(new, self._tables), final=False)
+        self._tables.take()
+        return message
 
     def final(self) -> str | None:
         """Return all of the run, which is over; None where nothing was flown."""

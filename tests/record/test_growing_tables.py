@@ -27,6 +27,7 @@ def test_rows_are_added_as_whole_lines_come_to_be_there(tmp_path):
         growing.grow()
         lengths.append(len(growing["truth.csv"]))
         together.append(growing.new()["truth.csv"])
+        growing.take()
     for name in content:
         assert np.array_equal(growing[name], read_table(tmp_path / name))
     assert lengths == sorted(lengths) and lengths[0] == 0 and lengths[-1] == 101
@@ -38,6 +39,8 @@ def test_no_row_is_new_where_none_came(tmp_path):
     growing = GrowingTables(tmp_path)
     assert len(growing["truth.csv"]) == len(growing.new()["truth.csv"]) == 101
     growing.grow()
+    assert len(growing["truth.csv"]) == len(growing.new()["truth.csv"]) == 101, "nobody has taken them"
+    growing.take()
     assert len(growing["truth.csv"]) == 101 and len(growing.new()["truth.csv"]) == 0
 
 
@@ -46,6 +49,7 @@ def test_text_is_read_on_and_what_is_no_table_is_refused(tmp_path):
     path.write_text(ALARMS + '1.5,vehicle 1,bias,warning,"a, b"\n2.5,')
     growing = GrowingTables(tmp_path)
     assert growing["alarms.csv"]["text"].tolist() == ["a, b"]
+    growing.take()
     with path.open("a") as file:
         file.write("payload,noise,error,c\n")
     growing.grow()

@@ -17,6 +17,7 @@ from websockets.sync.client import connect
 from gcs.drivers.live_view import LiveView
 from gcs.record.run_data import read_run
 from gcs.record.run_folder import write_json
+from gcs.record.tables import ESTIMATE_COLUMNS
 from gcs.view import live
 from gcs.view.live import Records
 from gcs.view.page_data import QUANTUM
@@ -39,6 +40,18 @@ def folder(tmp_path, flown):
     for name in ("manifest.json", "obstacles.csv"):
         shutil.copy(flown / name, tmp_path)
     return tmp_path
+
+
+def test_rows_of_the_estimate_wait_for_those_of_the_truth(folder, flown):
+    write_until(folder, flown, 0.5)
+    records = Records(folder)
+    records.message()
+    estimate = folder / "estimate.csv"
+    estimate.write_text(",".join(ESTIMATE_COLUMNS) + "\n" + ",".join(["6.0"] * len(ESTIMATE_COLUMNS)) + "\n")
+    assert records.message() is None
+    write_until(folder, flown, 1.0)
+    header = json.loads(records.message())["header"]
+    assert header["meta"]["source"] == "truth" and "estimate.payload.position" in header["channels"]
 
 
 def decoded(message):
