@@ -22,6 +22,7 @@ COMMANDS = {
     "missions": "list the missions that come with the package",
     "report": "draw what happened in a run",
     "export": "write a run as ULog or as one telemetry log for each system",
+    "film": "make a film of a run",
     "courses": "fly many random obstacle scenarios",
     "faults": "list the kinds of fault, fly campaigns of them",
     "reproduce": "regenerate the figures and numbers of the paper",
@@ -35,6 +36,7 @@ The ground station of cooplift: UAVs that carry one payload together.
   gcs fly figure_eight                      flies it with a simulated swarm of its own
   gcs report runs/figure-eight-1            writes the page that shows what happened
   gcs export runs/figure-eight-1 --ulog     writes it as ULog files, one for each vehicle and one for the payload
+  gcs film runs/figure-eight-1              makes a film of it
   gcs faults telemetry_faults               flies a campaign of telemetry faults
   gcs courses                               flies 200 random obstacle scenarios and shows the distribution
   gcs reproduce --quick                     the paper's figures and numbers, as printed and as corrected

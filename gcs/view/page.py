@@ -2,6 +2,7 @@
 
 import html
 import json
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -24,22 +25,26 @@ def write_report(run: RunData, other: RunData | None = None) -> Path:
 
     Raises :class:`UnusableInput` where nothing was flown, or where the page cannot be written.
     """
-    runs = [run] if other is None else [run, other]
+    text = report_text([run] if other is None else [run, other])
+    name = REPORT if other is None else f"report-{other.folder.resolve().name}.html"
+    return write_page(run.folder / name, text)
+
+
+def report_text(runs: Sequence[RunData]) -> str:
+    """Return the report page of a run, or of two that are compared; see :func:`write_report`."""
     for each in runs:
         if len(each.time) == 0:
             raise UnusableInput(f"{each.folder}: nothing was flown: there is no row in truth.csv or estimate.csv")
     documents = [PageData(each).document() for each in runs]
-    meta = documents[0][0]["meta"]
-    title = f"{meta['mission']}, seed {meta['seed']}: {meta['outcome']}"
-    if other is not None:
-        second = documents[1][0]["meta"]
+    first, *others = (header["meta"] for header, _ in documents)
+    title = f"{first['mission']}, seed {first['seed']}: {first['outcome']}"
+    for second in others:
         title += f", compared with {second['mission']}, seed {second['seed']}: {second['outcome']}"
     data = "\n".join(
         f'{script("run-header", header)}\n<script type="application/octet-stream" class="run-blob">{blob}</script>'
         for header, blob in documents
     )
-    name = REPORT if other is None else f"report-{other.folder.resolve().name}.html"
-    return write_page(run.folder / name, page(title, data))
+    return page(title, data)
 
 
 def page(title: str, data: str) -> str:

@@ -19,7 +19,10 @@ PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PROJECT = PYPROJECT["project"]
 
 EXTRAS = PROJECT["optional-dependencies"]
-REQUIRED = [*PROJECT["dependencies"], *EXTRAS["cluster"], *EXTRAS["parquet"], *EXTRAS["suites"]]
+REQUIRED = [
+    *PROJECT["dependencies"],
+    *(each for name in ("cluster", "film", "parquet", "suites") for each in EXTRAS[name]),
+]
 DECLARED = [*REQUIRED, *EXTRAS["ulog"], *EXTRAS["dev"][1:]]
 """With tools that read what is exported, which no package imports."""
 
@@ -102,8 +105,8 @@ def test_all_packages_are_installed():
 
 
 def test_development_has_all_extras():
-    assert EXTRAS["dev"][0] == "cooplift[cluster,parquet,suites,ulog]"
-    assert EXTRAS.keys() == {"cluster", "dev", "parquet", "suites", "ulog"}
+    assert EXTRAS["dev"][0] == "cooplift[cluster,film,parquet,suites,ulog]"
+    assert EXTRAS.keys() == {"cluster", "dev", "film", "parquet", "suites", "ulog"}
 
 
 @pytest.mark.parametrize(
