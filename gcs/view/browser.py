@@ -36,6 +36,7 @@ class Browser:
         self._answers, from_browser = os.pipe()
         arguments = [
             program, "--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+            "--disable-gpu",  # of the page around the canvas, which costs less without
             "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
             "--disable-sync", "--disable-extensions", "--hide-scrollbars", "--remote-debugging-pipe",
             f"--user-data-dir={profile}", "about:blank",

@@ -5,8 +5,10 @@ import { isZone } from './fence.js';
 import { attitudeToScene, toScene } from './frames.js';
 import { Polyline } from './polyline.js';
 import { shapeGeometry } from './shapes.js';
+import { straightened } from './thinning.js';
 
 const FADED = 0.25; // opacity of what hides the formation
+const TOLERANCE = 0.02; // m, of the path of one that moves
 const TOUCHING = 0.05; // m: a place on the surface is not behind it
 
 export class Obstacles {
@@ -38,7 +40,8 @@ export class Obstacles {
       if (!channel) continue;
       const line = new Polyline(path);
       const step = Math.max(1, Math.floor(channel.t.length / 1000));
-      line.setPoints(Array.from({ length: Math.ceil(channel.t.length / step) }, (_, k) => channel.row(k * step)));
+      const points = Array.from({ length: Math.ceil(channel.t.length / step) }, (_, k) => channel.row(k * step));
+      line.setPoints(straightened(points, TOLERANCE));
       this.group.add(line);
     }
   }

@@ -41,7 +41,8 @@ export class Palette {
 
   /** A translucent surface, which hides nothing. @param {string} colour token @param {number} opacity @param {object} [options] */
   translucent(colour, opacity, options = {}) {
-    const look = { transparent: true, opacity, depthWrite: false, side: DoubleSide };
+    // In one pass: of one colour and without shade, both sides look the same in any order.
+    const look = { transparent: true, opacity, depthWrite: false, side: DoubleSide, forceSinglePass: true };
     return this.keep(colour, new MeshBasicMaterial({ ...look, ...options }));
   }
 

@@ -3,8 +3,11 @@
 import { Group } from 'three';
 import { toScene } from './frames.js';
 import { Polyline } from './polyline.js';
+import { spaced, straightened } from './thinning.js';
 
 const TRAIL_POINTS = 4000; // at most, over a flight
+const TRAIL_STEP = 0.25; // m from point to point
+const TOLERANCE = 0.02; // m, of the mission's path
 const PLAN_AGE = 0.5; // s after which a plan is no longer shown
 
 /** @typedef {import('../data.js').Run} Run */
@@ -20,7 +23,7 @@ export function reference(run, palette) {
 /** @param {Run} run */
 export function referencePoints(run) {
   const channel = run.channel('reference.position');
-  return channel ? sampled(channel, 3000).map((i) => channel.row(i)) : [];
+  return channel ? straightened(sampled(channel, 3000).map((i) => channel.row(i)), TOLERANCE) : [];
 }
 
 /** Where the payload has flown until a time, coloured by its speed. */
@@ -40,7 +43,8 @@ export class Trail {
   read() {
     const position = this.run.flown('position');
     const velocity = this.run.flown('velocity');
-    const rows = position ? sampled(position, TRAIL_POINTS) : [];
+    const sample = position ? sampled(position, TRAIL_POINTS) : [];
+    const rows = spaced(sample.map((i) => position.row(i)), TRAIL_STEP).map((i) => sample[i]);
     this.times = rows.map((i) => position.t[i]);
     this.points = rows.map((i) => position.row(i));
     this.speeds = rows.map((i) => (velocity ? Math.hypot(...velocity.row(i)) : 0));
