@@ -12,35 +12,39 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Self
 
-from gcs.errors import GcsError
+from gcs.errors import GcsError, UnusableInput
 
 _NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 _PATIENCE = 60.0  # s for an answer, on a machine with other work
 
 
-def find_browser() -> str | None:
-    """Return the path of an installed Chromium; ``None`` where there is none."""
-    return next(filter(None, map(shutil.which, _NAMES)), None)
+def find_browser() -> str:
+    """Return the path of an installed Chromium. Raises :class:`UnusableInput` where there is none."""
+    found = next(filter(None, map(shutil.which, _NAMES)), None)
+    if found is None:
+        raise UnusableInput("no Chromium or Chrome is installed (Debian, Ubuntu: apt-get install chromium)")
+    return found
 
 
 class Browser:
-    """One tab of the Chromium ``program``; a context manager that ends the program.
+    """One tab of the installed Chromium; a context manager that ends the program.
 
-    ``profile`` is a folder that it may fill. Methods raise :class:`GcsError` where Chromium fails or does not answer.
+    ``profile`` is a folder that it may fill. Raises :class:`UnusableInput` where none is installed, and
+    :class:`GcsError` where it fails or does not answer.
     """
 
-    def __init__(self, program: str, profile: Path) -> None:
+    def __init__(self, profile: Path) -> None:
         self.errors: list[str] = []
         """Errors of the console and uncaught exceptions, since the last page was opened."""
-        to_browser, self._commands = os.pipe()
-        self._answers, from_browser = os.pipe()
         arguments = [
-            program, "--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+            find_browser(), "--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
             "--disable-gpu",  # of the page around the canvas, which costs less without
             "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
             "--disable-sync", "--disable-extensions", "--hide-scrollbars", "--remote-debugging-pipe",
             f"--user-data-dir={profile}", "about:blank",
         ]  # fmt: skip
+        to_browser, self._commands = os.pipe()
+        self._answers, from_browser = os.pipe()
         # The browser reads commands from descriptor 3 and answers on 4.
         shell = f'exec "$@" 3<&{to_browser} 4>&{from_browser}'
         # In a session of its own: an interrupt from the keyboard reaches only this program, which then ends it.

@@ -4,6 +4,7 @@ import os
 
 import pytest
 
+from gcs.errors import UnusableInput
 from gcs.view import browser
 
 REQUIRED = "COOPLIFT_REQUIRE_BROWSER"
@@ -11,20 +12,21 @@ REQUIRED = "COOPLIFT_REQUIRE_BROWSER"
 _KEYS = {" ": "Space", "+": "Equal", "-": "Minus"}
 
 
-def browser_path():
-    """The path of Chromium; skips the test where there is none."""
-    found = browser.find_browser()
-    if found is None:
+def need_browser():
+    """Skip the test where no Chromium is installed, or fail."""
+    try:
+        browser.find_browser()
+    except UnusableInput as error:
         say = pytest.fail if os.environ.get(REQUIRED) == "1" else pytest.skip
-        say("no Chromium on this machine (Debian: apt-get install chromium)")
-    return found
+        say(str(error))
 
 
 class Browser(browser.Browser):
     """One tab of the installed Chromium."""
 
     def __init__(self, profile):
-        super().__init__(browser_path(), profile)
+        need_browser()
+        super().__init__(profile)
 
     def press(self, key):
         """Press and release a key."""

@@ -2,8 +2,10 @@
 
 import argparse
 import re
+from functools import partial
 from pathlib import Path
 
+from gcs.app.arguments import number, whole_number
 from gcs.app.exit_status import ExitStatus
 from gcs.app.imports import importing
 
@@ -13,26 +15,32 @@ film.mp4 in the run folder, or --out FILE, whose suffix says the format: .mp4, .
 and pip install 'cooplift[film]'.
 """
 
+VIEWS = ("around", "overview", "follow", "top")
+
 
 def _size(text: str) -> tuple[int, int]:
-    found = re.fullmatch(r"(\d{1,5})x(\d{1,5})", text)
-    if found is None:
-        raise argparse.ArgumentTypeError(f"{text!r} is not WIDTHxHEIGHT, such as 1280x720")
-    return int(found[1]), int(found[2])
+    found = re.fullmatch(r"(\d+)x(\d+)", text)
+    size = (int(found[1]), int(found[2])) if found else (0, 0)
+    if any(length % 2 or not 160 <= length <= 4096 for length in size):
+        raise argparse.ArgumentTypeError(f"{text!r} is not WIDTHxHEIGHT, even numbers from 160 to 4096")
+    return size
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("run_dir", type=Path, metavar="RUN_DIR", help="a run folder")
-    parser.add_argument("--out", type=Path, metavar="FILE", help="the film (default: film.mp4 in the run folder)")
-    parser.add_argument("--from", type=float, metavar="S", dest="start", help="begin at this time of the flight (s)")
-    parser.add_argument("--to", type=float, metavar="S", dest="end", help="end at this time of the flight (s)")
-    parser.add_argument(
-        "--speed", type=float, default=1.0, metavar="X", help="seconds of the flight in one of the film"
-    )
-    parser.add_argument("--size", type=_size, default=(1280, 720), metavar="WxH", help="pixels (default: 1280x720)")
-    parser.add_argument("--fps", type=int, default=25, metavar="N", help="frames in a second (default: 25)")
-    parser.add_argument("--camera", choices=("follow", "overview", "top"), help="default: that of the report page")
+    add = parser.add_argument
+    add("run_dir", type=Path, metavar="RUN_DIR", help="a run folder")
+    add("--out", type=Path, metavar="FILE", help="the film (default: film.mp4 in the run folder)")
+    add("--from", type=float, metavar="S", dest="start", help="begin at this time of the flight (s)")
+    add("--to", type=float, metavar="S", dest="end", help="end at this time of the flight (s)")
+    add("--speed", type=partial(number, least=0.01, most=100.0), default=1.0, metavar="X",
+        help="seconds of the flight in one of the film (default: 1)")  # fmt: skip
+    add("--size", type=_size, default=(960, 540), metavar="WxH", help="pixels (default: 960x540)")
+    add("--fps", type=partial(whole_number, least=1, most=60), default=25, metavar="N",
+        help="frames in a second of the film (default: 25)")  # fmt: skip
+    add("--camera", choices=VIEWS, default=VIEWS[0],
+        help="around: from beside the flight, slowly to and fro, of a wide one what is near the payload (default); "
+        "overview, follow and top: those of the report page")  # fmt: skip
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -3,6 +3,7 @@
 import { Clock } from './clock.js';
 import { h } from './dom.js';
 import { eventList } from './events.js';
+import { film } from './film.js';
 import { cards, comparison, title } from './header.js';
 import { Plots } from './plots.js';
 import { Scene } from './scene.js';
@@ -91,6 +92,11 @@ export class ReportPage {
     if (!this.scene) return;
     this.scene.dispose();
     this.scene = this.newScene(this.scene.cameras);
+  }
+
+  /** Become a film, and return what draws a time (s). @param {import('./film.js').View} view */
+  film(view) {
+    return film(/** @type {Scene} */ (this.scene), view);
   }
 
   /** End all that goes on by itself. */

@@ -72,7 +72,7 @@ export class Cameras {
     this.kind = kind;
     this.orbit.enabled = kind !== 'top';
     this.pan.enabled = kind === 'top';
-    if (kind === 'free') this.overview();
+    if (kind === 'free') this.frame(this.corners, FROM);
     else if (kind === 'follow') this.nearby();
     else {
       this.pan.target.copy(this.middle);
@@ -83,12 +83,16 @@ export class Cameras {
     }
   }
 
-  /** Look at the whole flight: the corners of its box fill the picture. */
-  overview() {
+  /**
+   * Look at a box: its corners fill the picture.
+   * @param {Vector3[]} corners
+   * @param {Vector3} from the direction to the camera
+   */
+  frame(corners, from) {
     const { perspective } = this;
     const { target } = this.orbit;
-    target.copy(this.middle);
-    perspective.position.copy(target).add(FROM);
+    target.copy(corners[0]).add(corners[7]).multiplyScalar(0.5);
+    perspective.position.copy(target).add(from);
     perspective.lookAt(target);
     perspective.updateMatrixWorld();
     const [right, up, back] = [0, 1, 2].map((k) => new Vector3().setFromMatrixColumn(perspective.matrixWorld, k));
@@ -96,15 +100,15 @@ export class Cameras {
     let distance = 0;
     // What is near fills more of the picture than what is far, so the target moves until both sides fill as much.
     for (let pass = 0; pass < 4; pass += 1) {
-      const seen = this.corners.map((corner) => corner.clone().sub(target));
-      const reach = (/** @type {Vector3} */ from) => Math.max(Math.abs(from.dot(right)) / (perspective.aspect * this.seen), Math.abs(from.dot(up)));
-      distance = Math.max(...seen.map((from) => from.dot(back) + reach(from) / slope));
+      const seen = corners.map((corner) => corner.clone().sub(target));
+      const reach = (/** @type {Vector3} */ corner) => Math.max(Math.abs(corner.dot(right)) / (perspective.aspect * this.seen), Math.abs(corner.dot(up)));
+      distance = Math.max(...seen.map((corner) => corner.dot(back) + reach(corner) / slope));
       for (const axis of [right, up]) {
-        const sides = seen.map((from) => from.dot(axis) / (distance - from.dot(back)));
+        const sides = seen.map((corner) => corner.dot(axis) / (distance - corner.dot(back)));
         target.addScaledVector(axis, (distance * (Math.min(...sides) + Math.max(...sides))) / 2);
       }
     }
-    perspective.position.copy(target).addScaledVector(FROM, distance);
+    perspective.position.copy(target).addScaledVector(from, distance);
     this.orbit.update();
   }
 
