@@ -17,7 +17,8 @@ export OPENBLAS_NUM_THREADS := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help install fly test test-fast test-long test-lowest test-numerics release golden golden-renew page
-.PHONY: claims claims-all claims-write fault-tables anew benchmark benchmark-campaign benchmark-check benchmark-view docs clean
+.PHONY: claims claims-all claims-write fault-tables anew benchmark benchmark-campaign benchmark-check benchmark-view docs
+.PHONY: pictures clean
 
 help:
 	@echo "make fly          fly $(MISSION) with a simulated swarm (MISSION=... for another one)"
@@ -38,6 +39,7 @@ help:
 	@echo "make benchmark-campaign  throughput of parallel flights against a single one's"
 	@echo "make benchmark-view   CPU cost of a flight with its live view against that without"
 	@echo "make docs         write docs/settings.md, docs/failsafes.md and NOTICE from what they are about"
+	@echo "make pictures     fly and film the moving pictures of README.md (needs Chromium; about 2 min of CPU)"
 	@echo "make page         bundle the scripts of the report page anew (needs node and npm)"
 	@echo "make install      only install, into $(VENV)"
 	@echo "make clean        remove $(VENV) and the caches"
@@ -114,6 +116,15 @@ docs: $(INSTALLED)
 	$(VENV)/bin/python -m gcs.flight.listing > docs/failsafes.md
 	$(VENV)/bin/python -m gcs.faults.listing docs/faults.md
 	$(VENV)/bin/python tests/packaging/notice.py > NOTICE
+
+PICTURES := build/pictures
+FILM := $(VENV)/bin/gcs film --speed 4 --size 640x360 --fps 12
+pictures: $(COMPILED)
+	rm -rf $(PICTURES)
+	$(VENV)/bin/gcs fly missions/figure_eight_spheres.toml --seed 5001 --run-dir $(PICTURES)/spheres
+	$(FILM) $(PICTURES)/spheres --from 11 --to 71 --out docs/two_spheres.webp
+	$(VENV)/bin/gcs fly missions/pole_course.toml --run-dir $(PICTURES)/poles
+	$(FILM) $(PICTURES)/poles --from 10 --to 72 --out docs/pole_course.webp
 
 # Needs node and npm, which neither the installation nor a flight does.
 page:

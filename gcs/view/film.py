@@ -18,7 +18,7 @@ from gcs.view.page import report_text, write_page
 FILM = "film.mp4"
 ENCODERS = {
     ".mp4": ["-c:v", "libx264", "-preset", "veryfast", "-crf", "23", "-pix_fmt", "yuv420p", "-movflags", "+faststart"],
-    ".webp": ["-c:v", "libwebp", "-quality", "60", "-compression_level", "4", "-loop", "0"],
+    ".webp": ["-c:v", "libwebp_anim", "-quality", "60", "-compression_level", "4", "-loop", "0"],
     ".gif": ["-filter_complex", "split[a][b];[a]palettegen=max_colors=96[p];[b][p]paletteuse=dither=none"],
 }
 """Options of ffmpeg by the suffix of the file."""

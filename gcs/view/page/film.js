@@ -8,7 +8,8 @@ import { toScene } from './scene/frames.js';
 /** @typedef {'around'|'overview'|'follow'|'top'} View */
 
 const REACH = 9; // m, to each side of the payload: of a wider flight only this is seen
-const EDGE = 2; // m, of the ground, which may lie outside the picture
+const EDGE = 2; // m, of the ground, that may lie outside the picture
+const EDGE_SHARE = 0.2; // at most, of half its width
 const UP = 0.36; // of the camera, to one aside
 const SWING = 0.4; // rad, to both sides
 const PERIOD = 60; // s of the flight
@@ -53,8 +54,10 @@ function seen({ run, cameras: { corners } }, time) {
   const payload = toScene(run.flown('position').at(time));
   const sides = ['x', 'z'].map((axis) => {
     const [low, high] = [corners[0][axis], corners[7][axis]].sort((a, b) => a - b);
-    const reach = Math.min(REACH, (high - low) / 2 - EDGE);
-    const middle = Math.min(Math.max(payload[axis], low + EDGE + reach), high - EDGE - reach);
+    const half = (high - low) / 2;
+    const edge = Math.min(EDGE, EDGE_SHARE * half);
+    const reach = Math.min(REACH, half - edge);
+    const middle = Math.min(Math.max(payload[axis], low + edge + reach), high - edge - reach);
     return [middle - reach, middle + reach];
   });
   return corners.map((corner, k) => new Vector3(sides[0][k & 1], corner.y, sides[1][(k >> 2) & 1]));
