@@ -48,8 +48,8 @@ def licence_of(name: str) -> str:
 
 
 INSIDE = """
-imageio-ffmpeg (extra film) brings the program ffmpeg, built with x264 under the GPL 3: gcs film runs it as a program of its
-own, and nothing of it is distributed with cooplift.
+imageio-ffmpeg (extra film) brings the program ffmpeg, built with x264 under the GPL 3: gcs film runs it as a program of
+its own, and nothing of it is distributed with cooplift.
 
 gcs/view/page.bundle.js, which report pages hold, contains these, minified, with the text of their licences:
 """
