@@ -10,6 +10,7 @@ import { toScene } from './scene/frames.js';
 const REACH = 9; // m, to each side of the payload: of a wider flight only this is seen
 const EDGE = 2; // m, of the ground, that may lie outside the picture
 const EDGE_SHARE = 0.2; // at most, of half its width
+const HEADROOM = 1; // m above, for the title
 const UP = 0.36; // of the camera, to one aside
 const SWING = 0.4; // rad, to both sides
 const PERIOD = 60; // s of the flight
@@ -60,5 +61,5 @@ function seen({ run, cameras: { corners } }, time) {
     const middle = Math.min(Math.max(payload[axis], low + edge + reach), high - edge - reach);
     return [middle - reach, middle + reach];
   });
-  return corners.map((corner, k) => new Vector3(sides[0][k & 1], corner.y, sides[1][(k >> 2) & 1]));
+  return corners.map((corner, k) => new Vector3(sides[0][k & 1], corner.y > 0 ? corner.y + HEADROOM : 0, sides[1][(k >> 2) & 1]));
 }
