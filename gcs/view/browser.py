@@ -107,11 +107,11 @@ class Browser:
                 self.errors.append(details["entry"]["text"])
         return message
 
-    def open(self, path: Path, width: int = 1280, height: int = 800) -> None:
-        """Open a file in a window of that size (CSS pixels), and wait until its report is shown."""
+    def open(self, page: Path | str, width: int = 1280, height: int = 800) -> None:
+        """Open a file, or an address, in a window of that size (CSS pixels), and wait until its report is shown."""
         self.errors.clear()
         self.size(width, height)
-        self.call("Page.navigate", url=path.resolve().as_uri())
+        self.call("Page.navigate", url=page if isinstance(page, str) else page.resolve().as_uri())
         self.wait("window.report !== undefined || document.querySelector('.failed') !== null")
 
     def size(self, width: int, height: int) -> None:

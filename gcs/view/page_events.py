@@ -37,7 +37,8 @@ def phases(run: RunData) -> Iterable[Event]:
     table = run.tables[PHASES]
     ends = [*table["time_s"][1:].tolist(), _end(run)] if len(table) else []
     for row, end in zip(table, ends, strict=True):
-        yield event("phase", float(row["time_s"]), end, "team", row["phase"])
+        start = float(row["time_s"])
+        yield event("phase", start, max(start, end), "team", row["phase"])  # the last one begins after the truth ends
 
 
 def modes(run: RunData) -> Iterable[Event]:

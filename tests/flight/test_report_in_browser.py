@@ -139,6 +139,12 @@ def test_zoom_is_that_of_all_plots(shown):
     shown.value("report.plots.zoom(2, 5)")
     scales = shown.value("report.plots.shown.map(({plot}) => [plot.scales.x.min, plot.scales.x.max])")
     assert scales == [[2, 5]] * len(scales)
+    # The line of the clock stays at its time.
+    shown.value("report.clock.set(4)")
+    shown.value("report.plots.zoom(3, 5)")
+    shown.frame()
+    at = "Number(cursor.style.transform.match(/[\\d.]+/)[0]) / plot.over.clientWidth"
+    assert np.allclose(shown.value(f"report.plots.shown.map(({{plot, cursor}}) => {at})"), 0.5, atol=0.01)
 
 
 OVERLAPS = """(() => {

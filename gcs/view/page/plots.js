@@ -130,6 +130,11 @@ export class Plots {
       ],
       bands: (figure.bands ?? []).map(({ low, high, color }) => ({ series: [high, low], fill: `${token(color)}40` })),
       hooks: {
+        // The scale is not set before uPlot draws.
+        setScale: [(u, key) => {
+          const found = key === 'x' && this.shown.find(({ plot }) => plot === u);
+          if (found) this.place(found, true);
+        }],
         drawClear: [(u) => this.background(u, this.shown.find(({ plot }) => plot === u)?.figure ?? figure)],
         setSelect: [(u) => {
           if (u.select.width > 3) {
@@ -164,10 +169,7 @@ export class Plots {
   /** Show all plots from one time to another (s). */
   zoom(begin, end) {
     this.view = [Math.max(begin, this.clock.begin), Math.min(end, this.clock.end)];
-    for (const found of this.shown) {
-      found.plot.setScale('x', { min: this.view[0], max: this.view[1] });
-      this.place(found, false);
-    }
+    for (const { plot } of this.shown) plot.setScale('x', { min: this.view[0], max: this.view[1] });
   }
 
   background(u, figure) {

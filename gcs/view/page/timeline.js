@@ -35,7 +35,9 @@ export function timeline(run, clock, signal) {
   const lanes = LANES.map(({ name, kinds, title }) => {
     const events = run.events.filter((event) => kinds.includes(event.kind));
     if (!events.length) return null;
-    const bands = events.map((event) => {
+    // What is short lies above what is long.
+    const lasts = (event) => (event.end ?? (event.kind === 'isolation' ? end : event.start)) - event.start;
+    const bands = [...events].sort((a, b) => lasts(b) - lasts(a)).map((event) => {
       const instant = event.end === null && !['isolation', 'fault'].includes(event.kind);
       const until = instant ? event.start : (event.end ?? end);
       return h(

@@ -87,9 +87,12 @@ export function safety(run) {
     );
     for (const [name, entry] of Object.entries(plan.exceeded ?? {})) {
       const what = name.replaceAll('_', ' ');
-      found.push(`The guarantee did not hold: ${what} was ${number(entry.value, 3)} m (limit ${number(entry.limit, 3)} m).`);
+      const when = Number.isFinite(entry.time_s) ? ` at ${number(entry.time_s, 1)} s` : '';
+      found.push(`The guarantee did not hold: ${what} was ${number(entry.value, 3)} m${when} (limit ${number(entry.limit, 3)} m).`);
     }
   }
+  const missed = Object.entries(summary.limits ?? {}).filter(([, { held }]) => !held).map(([name]) => (LIMITS[name] ?? [name])[0]);
+  if (missed.length) found.push(`Outside the mission's limits: ${missed.join(', ')} (see Limits).`);
   return found;
 }
 
@@ -153,6 +156,7 @@ export function faults(run) {
         : 'no alarm';
       for (const isolation of isolations) {
         text += `; ${isolation.text} of ${isolation.source} isolated after ${number(isolation.start - fault.start)} s`;
+        text += isolation.end === null ? '' : `, used again from ${number(isolation.end, 1)} s`;
       }
       return { text: `${text}.`, event: fault };
     });
