@@ -31,6 +31,8 @@ _CIRCLE_SEGMENTS = 32
 ROW = 14
 """Numbers of a body in arrays of bodies, see :attr:`Shape.row`."""
 
+_UPRIGHT = np.eye(3)
+
 LENGTH: Mapping[str, str] = {"unit": "m"}
 """Metadata of a shape's field that is a length, or a tuple of lengths (m): positive; a key of the mission file."""
 ANGLE: Mapping[str, str] = {"unit": "rad"}
@@ -130,7 +132,7 @@ class Shape(ABC):
     @property
     def rotation(self) -> Array:
         """Shape frame to world (3, 3)."""
-        return np.eye(3)
+        return _UPRIGHT
 
     @property
     def quaternion(self) -> tuple[float, float, float, float]:

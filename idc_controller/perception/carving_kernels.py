@@ -32,7 +32,6 @@ from idc_controller.perception.voxel_kernels import (
     Rules,
     Voxels,
     block_in_page,
-    block_key,
     block_of,
     cell_index,
     page_key,
@@ -137,11 +136,12 @@ def carve(voxels: Voxels, rules: Rules, rays: Rays, scan: float) -> None:
         x, x_step, x_next, x_apart = _first_side(origin[0], way[0], size)
         y, y_step, y_next, y_apart = _first_side(origin[1], way[1], size)
         z, z_step, z_next, z_apart = _first_side(origin[2], way[2], size)
-        key, in_page, page, block, met = -1, -1, -1, -1, False
-        while min(x_next, y_next, z_next) <= last:
-            now = block_key(x, y, z)
-            if now != key:
-                key = now
+        x_edge, y_edge, z_edge = 7 * (x_step > 0), 7 * (y_step > 0), 7 * (z_step > 0)
+        is_other, in_page, page, block, met = True, -1, -1, -1, False
+        reach = min(x_next, y_next, z_next)
+        while reach <= last:
+            if is_other:
+                is_other = False
                 if page_key(x, y, z) != in_page:
                     in_page, page = page_key(x, y, z), page_of(voxels, x, y, z)
                 block = pages[page, block_in_page(x, y, z)]
@@ -163,6 +163,7 @@ def carve(voxels: Voxels, rules: Rules, rays: Rays, scan: float) -> None:
                     if z_next <= out:
                         sides = int((out - z_next) / z_apart) + 1
                         z, z_next = z + sides * z_step, z_next + sides * z_apart
+                    is_other, reach = True, min(x_next, y_next, z_next)
                     continue
             cell = cell_index(x, y, z)
             value = cells[block, cell]
@@ -191,15 +192,20 @@ def carve(voxels: Voxels, rules: Rules, rays: Rays, scan: float) -> None:
                 if value + 1 == free_passes:
                     blocks[block, CHANGE] |= FREE
                     blocks[block, FREE_CELLS] += 1
-            if x_next <= y_next and x_next <= z_next:
+            # From the last voxel of a block the ray enters another one.
+            if x_next == reach:
+                is_other = x & 7 == x_edge
                 x += x_step
                 x_next += x_apart
-            elif y_next <= z_next:
+            elif y_next == reach:
+                is_other = y & 7 == y_edge
                 y += y_step
                 y_next += y_apart
             else:
+                is_other = z & 7 == z_edge
                 z += z_step
                 z_next += z_apart
+            reach = min(x_next, y_next, z_next)
 
 
 @kernel

@@ -112,9 +112,11 @@ class TrackList:
             # What stops and goes may have come to rest for a moment only.
             may_stand = track.seems_to_stand or (track.is_static and track.is_bound_to_region)
             points = track.detections.points
-            return (rests and stands(points, math.inf).mean() > 0.5) or (
-                may_stand and stands(points, observed).mean() > 0.5
-            )
+
+            def are_held(since: float) -> bool:
+                return bool(2 * np.count_nonzero(stands(points, since)) > len(points))
+
+            return (rests and are_held(math.inf)) or (may_stand and are_held(observed))
 
         self.tracks = [track for track in self.tracks if track.map_shape is not None or not is_absorbed(track)]
 

@@ -28,30 +28,23 @@ class FlatSurface:
         extensions = {1: settings.side_extension, 2: settings.top_extension}
         self._ends = {(axis, sign): EndOfSurface(extensions[axis], settings) for axis in (1, 2) for sign in (1, -1)}
 
-    @property
-    def shape(self) -> Wall:
+        if known is not None:
+            self.shape, self.offset, self.size_sigma = known, np.zeros(3), 0.0
+
+    def _describe(self) -> None:
+        """Keep what follows from a fit."""
+        ends = self._ends
+        lo = np.array([-self._thickness, -ends[1, -1].outermost, -ends[2, -1].outermost])
+        hi = np.maximum(np.array([0.0, ends[1, 1].outermost, ends[2, 1].outermost]), lo + 0.05)
+        self._extent = lo, hi
+        """Lowest and highest coordinates of the box in its own frame, about the reference point (3,), (3,)."""
+        x, y, z = (hi - lo).tolist()
+        self.shape = Wall((x, y, z), float(self._yaw))
         """The estimated shape."""
-        if self.known is not None:
-            return self.known
-        lo, hi = self._extent()
-        x, y, z = hi - lo
-        return Wall((float(x), float(y), float(z)), float(self._yaw))
-
-    @property
-    def offset(self) -> Array:
+        self.offset = self._rotation() @ (0.5 * (lo + hi))
         """Vector from the reference point to the box's centre (3,)."""
-        if self.known is not None:
-            return np.zeros(3)
-        lo, hi = self._extent()
-        return self._rotation() @ (0.5 * (lo + hi))
-
-    @property
-    def size_sigma(self) -> float:
+        self.size_sigma = float(min(np.sqrt(self._yaw_variance) * (hi[1] - lo[1]) / 2.0, self._settings.size_sigma_max))
         """Standard deviation of the place of the front's ends (m)."""
-        if self.known is not None:
-            return 0.0
-        lo, hi = self._extent()
-        return float(min(np.sqrt(self._yaw_variance) * (hi[1] - lo[1]) / 2.0, self._settings.size_sigma_max))
 
     def guess(self, scan: SurfacePoints) -> Array:
         """Orient the box by the points alone, and return a point of its front (3,); of a known one their middle."""
@@ -86,23 +79,23 @@ class FlatSurface:
         rays = scan.rays @ rotation
         front = np.abs(q[:, 0]) < 0.5
         shift = 0.0
-        noise = (scan.noise * rays) ** 2 + (scan.pose_variance + scan.scatter)[:, None] + s.model_sigma**2
+        own = scan.pose_variance + scan.scatter
+        noise = (scan.noise * rays) ** 2 + own[:, None] + s.model_sigma**2
+        limit = 3.0 * np.sqrt(scan.noise**2 + scan.pose_variance + scan.scatter)
+        across, farthest = noise[:, 0], 9.0 * np.maximum(noise[:, 0], 0.0025)
         self._yaw_variance += s.yaw_walk**2
         for _ in range(iterations):
-            residual = q[:, 0] - shift
-            front = np.abs(residual) < 3.0 * np.sqrt(scan.noise**2 + scan.pose_variance + scan.scatter)
+            depth, along = q[:, 0], q[:, 1]
+            residual = depth - shift
+            front = np.abs(residual) < limit
             if np.count_nonzero(front) < 3:
                 break
-            weight = front / (noise[:, 0] * (1.0 + residual**2 / (9.0 * np.maximum(noise[:, 0], 0.0025))))
-            along = q[:, 1]
-            # q_0 = shift - turn q_1, the turn held by what is known of the yaw.
-            information = np.array(
-                [
-                    [weight.sum(), -(weight * along).sum()],
-                    [-(weight * along).sum(), (weight * along**2).sum() + 1.0 / self._yaw_variance],
-                ]
-            )
-            change = np.linalg.solve(information, [(weight * q[:, 0]).sum(), -(weight * along * q[:, 0]).sum()])
+            weight = front / (across * (1.0 + residual**2 / farthest))
+            turning = weight * along
+            # depth = shift - turn along, the turn held by what is known of the yaw.
+            both, square = -turning.sum(), (weight * along**2).sum() + 1.0 / self._yaw_variance
+            information = np.array([[weight.sum(), both], [both, square]])
+            change = np.linalg.solve(information, [(weight * depth).sum(), -(turning * depth).sum()])
             shift, turn = float(change[0]), float(change[1])
             covariance = np.linalg.inv(information)
             self._yaw += turn
@@ -120,6 +113,7 @@ class FlatSurface:
         for (axis, sign), end in self._ends.items():
             end.update(sign * q[:, axis], scan.cut)
         self._learn_thickness(q, front, scan)
+        self._describe()
         variance = rotation[:, :2] ** 2 @ np.array([front_variance, sideways[1]])
         variance[2] = sideways[2]
         return Fit(predicted + rotation @ moved, variance, *self._score(q, noise))
@@ -176,7 +170,7 @@ class FlatSurface:
 
     def _score(self, q: Array, noise: Array) -> tuple[float, float]:
         """Score and what is unexplained of points (n, 3) in the box's frame, of variance ``noise`` (n, 3)."""
-        lo, hi = self._extent()
+        lo, hi = self._extent
         # To the front, the sides and the top; the bottom and the back are out of view of every vehicle that matters.
         distance = np.stack([q[:, 0], q[:, 1] - lo[1], q[:, 1] - hi[1], q[:, 2] - lo[2], q[:, 2] - hi[2]])
         variance = np.stack([noise[:, 0], noise[:, 1], noise[:, 1], noise[:, 2], noise[:, 2]])
@@ -184,13 +178,6 @@ class FlatSurface:
         pick = np.arange(len(q))
         off, own = distance[best, pick], variance[best, pick]
         return score(off, own), unexplained(off, own, fitted=2)
-
-    def _extent(self) -> tuple[Array, Array]:
-        """Lowest and highest coordinates of the box in its own frame, about the reference point (3,), (3,)."""
-        ends = self._ends
-        lo = np.array([-self._thickness, -ends[1, -1].outermost, -ends[2, -1].outermost])
-        hi = np.array([0.0, ends[1, 1].outermost, ends[2, 1].outermost])
-        return lo, np.maximum(hi, lo + 0.05)
 
     def _rotation(self) -> Array:
         cosine, sine = np.cos(self._yaw), np.sin(self._yaw)

@@ -28,19 +28,17 @@ class RoundSurface:
         self._variance = 1e-6 if known else settings.radius_sigma**2
         self._top = EndOfSurface(settings.pole_extension, settings)
 
-    @property
-    def shape(self) -> Shape:
-        """The estimated shape."""
-        if self.known is not None:
-            return self.known
-        if self._is_pole:
-            return Pole(self._radius, max(self._top.outermost, 0.1))
-        return Sphere(self._radius)
+        if known is not None:
+            self._describe()
 
-    @property
-    def offset(self) -> Array:
+    def _describe(self) -> None:
+        """Keep what follows from a fit."""
+        self.shape: Shape = self.known or (
+            Pole(self._radius, max(self._top.outermost, 0.1)) if self._is_pole else Sphere(self._radius)
+        )
+        """The estimated shape."""
+        self.offset = np.array([0.0, 0.0, -self.shape.half_height if self._is_pole else 0.0])
         """Vector from the reference point to the shape's centre (3,)."""
-        return np.array([0.0, 0.0, -self.shape.half_height if self._is_pole else 0.0])
 
     @property
     def size_sigma(self) -> float:
@@ -77,4 +75,5 @@ class RoundSurface:
             self._variance = max(radius_variance, s.radius_sigma_min**2)
             if self._is_pole:
                 self._top.update(-scan.points[:, 2], scan.cut)
+            self._describe()
         return Fit(position, spread, score, unexplained)
