@@ -17,13 +17,14 @@ def hat(v: ArrayLike) -> Array:
 
 def rotation_from_quaternion(q: ArrayLike) -> Array:
     """Rotation matrix body to world of a w-first unit quaternion. (..., 4) -> (..., 3, 3)."""
-    w, x, y, z = np.moveaxis(np.asarray(q, dtype=float), -1, 0)
+    q = np.asarray(q, dtype=float)
+    w, x, y, z = q.tolist() if q.ndim == 1 else np.moveaxis(q, -1, 0)
     rows = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
         [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
         [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
     ]
-    return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
+    return np.array(rows) if q.ndim == 1 else np.moveaxis(np.array(rows), (0, 1), (-2, -1))
 
 
 def quaternion_from_euler(roll: float, pitch: float, yaw: float) -> Array:

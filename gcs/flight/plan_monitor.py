@@ -1,6 +1,7 @@
 """Vehicles and payload as they report themselves, against the plan that is flown: what the estimate does not filter."""
 
 import math
+import statistics
 
 import numpy as np
 
@@ -63,7 +64,7 @@ class PlanMonitor:
                 moved = (time - position.time) * position.motion if position.has_motion else 0.0
                 self.deviations[i] = np.linalg.norm(position.pose + moved - place)
         known = self.deviations[~np.isnan(self.deviations)]
-        is_off = len(known) > 1 and float(np.median(known)) > self._settings.deviation_limit
+        is_off = len(known) > 1 and statistics.median(known.tolist()) > self._settings.deviation_limit
         self._off_since = min(self._off_since, time) if is_off else math.inf
 
     def is_off(self, time: float) -> bool:

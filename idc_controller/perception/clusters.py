@@ -68,7 +68,8 @@ class Segmentation:
         """
         self._spacing, self._cut_range, self._size = pattern.spacing, cut_range, size
         # Beyond the last rays, more of a body may lie out of view.
-        self._elevations = pattern.elevation_min + pattern.spacing, pattern.elevation_max - pattern.spacing
+        elevations = pattern.elevation_min + pattern.spacing, pattern.elevation_max - pattern.spacing
+        self._lowest, self._highest = np.sin(elevations).tolist()
         self._numbers = count()
 
     def candidates(
@@ -121,18 +122,15 @@ class Segmentation:
         points = scan.returns[rows]
         if not len(points):
             return np.empty(0, dtype=np.int64), []
-        distance = np.linalg.norm(points - scan.origin, axis=1)
+        distance = scan.distances[rows]
         gap = np.maximum(_GAP_SPACINGS * self._spacing * distance, _GAP_MIN)
         labels = connected(points * _COMPRESSION, gap)
         order = np.argsort(labels, kind="stable")
         points, distance = points[order], distance[order]
-        lowest, highest = np.sin(self._elevations)
         height = (points - scan.origin) @ scan.up
-        cut = (distance > self._cut_range) | (height < lowest * distance) | (height > highest * distance)
-        surface = SurfacePoints(
-            scan.time, points, np.tile(scan.origin, (len(points), 1)), cut, scan.range_sigma,
-            scan.position_sigma**2 + (scan.attitude_sigma * distance) ** 2,
-        )  # fmt: skip
+        cut = (distance > self._cut_range) | (height < self._lowest * distance) | (height > self._highest * distance)
+        origins = np.tile(scan.origin, (len(points), 1))
+        surface = SurfacePoints(scan.time, points, origins, cut, scan.range_sigma, scan.pose_variance[rows][order])
         ends = np.cumsum(np.bincount(labels, minlength=1)).tolist()
         return order, [
             Cluster(scan.uav, next(self._numbers), surface, slice(first, last))
@@ -150,12 +148,6 @@ def frames(scans: list[PlacedScan], simultaneous: float) -> Iterator[list[Placed
         frame.append(scan)
     if frame:
         yield frame
-
-
-def return_sigma(scan: PlacedScan) -> Array:
-    """Return the largest standard deviation of each return of a scan (n,) (m)."""
-    distance = np.linalg.norm(scan.returns - scan.origin, axis=1)
-    return np.asarray(np.sqrt(scan.range_sigma**2 + scan.position_sigma**2 + (scan.attitude_sigma * distance) ** 2))
 
 
 def shifted(scan: PlacedScan, by: Array) -> PlacedScan:

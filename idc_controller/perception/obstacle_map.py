@@ -12,7 +12,7 @@ from idc_controller.estimation.health.chi_squared import upper_quantile
 from idc_controller.geometry.obstacles import Bodies, PointGroups, PredictedObstacle, Region
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.association import associate, gating_shape
-from idc_controller.perception.clusters import Cluster, Segmentation, frames, return_sigma, shifted
+from idc_controller.perception.clusters import Cluster, Segmentation, frames, shifted
 from idc_controller.perception.map_check import MapCheck
 from idc_controller.perception.motion_evidence import Frame
 from idc_controller.perception.motion_imm import MotionModels
@@ -215,7 +215,7 @@ class ObstacleMap:
         may have moved away from any track; those that nothing standing explains; those of what has not been seen to
         stand for long.
         """
-        s, sigma = self._settings.association, self._sigmas * return_sigma(scan)
+        s, sigma = self._settings.association, self._sigmas * scan.sigma
         known = distance <= np.maximum(s.map_gate, sigma)
         of_tracks = near_tracks = np.zeros(len(known), dtype=bool)
         tracks = [track for track in self.tracks if track.is_obstacle]

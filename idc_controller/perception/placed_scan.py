@@ -49,6 +49,22 @@ class PlacedScan:
     """Upward axis of its body frame (3,)."""
 
     @cached_property
+    def distances(self) -> Array:
+        """Of the returns from the sensor (n,) (m)."""
+        return np.asarray(np.linalg.norm(self.returns - self.origin, axis=1))
+
+    @cached_property
+    def pose_variance(self) -> Array:
+        """Variance of each return from the pose, on every axis (n,) (m2)."""
+        return np.asarray(self.position_sigma**2 + (self.attitude_sigma * self.distances) ** 2)
+
+    @cached_property
+    def sigma(self) -> Array:
+        """Largest standard deviation of each return (n,) (m)."""
+        square = self.range_sigma**2 + self.position_sigma**2 + (self.attitude_sigma * self.distances) ** 2
+        return np.asarray(np.sqrt(square))
+
+    @cached_property
     def rays(self) -> Rays:
         """What kernels take of the scan."""
         sigmas = np.array([self.range_sigma, self.position_sigma, self.attitude_sigma])

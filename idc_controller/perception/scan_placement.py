@@ -233,7 +233,7 @@ class ScanPlacement:
         """Return the scan by its returns (n, 3) and rays (m, 3) in the body frame, and ``sigmas`` of the pose."""
         points, directions = measured
         along, (anywhere, turning) = self._sensors.range_noise, sigmas
-        place, rotation = np.ascontiguousarray(pose[0]), np.ascontiguousarray(rotation_from_quaternion(pose[1]))
+        place, rotation = np.ascontiguousarray(pose[0]), rotation_from_quaternion(pose[1])
         returns, rays, (square, angle) = placed_returns(points, directions, place, rotation)
         # Returns lie on the sensor's rays: how far they are off tells of an error that its noise is not.
         off = self._scatter[uav].add(float(square), len(returns))

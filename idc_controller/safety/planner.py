@@ -175,8 +175,10 @@ class _Layout:
         number = [columns.stop - columns.start for columns in slacks.values()]
         linear = np.repeat([penalty.linear for penalty in slacks], number)
         quadratic = np.repeat([penalty.quadratic for penalty in slacks], number)
+        whole = np.diag(np.concatenate([np.zeros(len(H)), quadratic]))
+        whole[: len(H), : len(H)] = H
         return cls(
-            block_diag(H, np.diag(quadratic)), G, lazy, linear, quadratic,
+            whole, G, lazy, linear, quadratic,
             np.zeros(n - len(H)), np.full(n - len(H), np.inf), slacks,
         )  # fmt: skip
 
