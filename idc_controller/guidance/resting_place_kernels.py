@@ -70,6 +70,8 @@ def least_distances(
                 if math.sqrt(x * x + y * y + z * z) - half - reach[b] - growth[b, k] < least[c]:
                     for height in axis:
                         least[c] = min(least[c], distance_to(bodies, b, x, y, z + height) - growth[b, k])
+                if k and growth[b, k] == growth[b, k - 1] and (centres[b, k] == centres[b, k - 1]).all():
+                    continue  # where it was a moment before, it is as far from the points below
                 x, y = north - centres[b, k, 0], east - centres[b, k, 1]
                 if math.sqrt(x * x + y * y) - reach[b] - growth[b, k] < least[c]:
                     for i in range(below):

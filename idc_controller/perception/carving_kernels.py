@@ -238,7 +238,7 @@ def followed_rays(voxels: Voxels, rays: Rays, first: int, stride: int) -> Array2
         first: number of the first ray of the others.
         stride: of the others.
     """
-    near = np.zeros((_AZIMUTHS, _ELEVATIONS), np.bool_)
+    near, held = np.zeros((_AZIMUTHS, _ELEVATIONS), np.bool_), np.zeros((_AZIMUTHS, _ELEVATIONS), np.bool_)
     origin, free, elements, reach = rays.origin, rays.free, voxels.elements, 0.0
     for r in range(free.shape[0]):
         square = 0.0
@@ -252,6 +252,9 @@ def followed_rays(voxels: Voxels, rays: Rays, first: int, stride: int) -> Array2
         square = x * x + y * y + z * z
         if 0.0 < square <= reach:
             a, b = _direction_cell(x, y, z, math.sqrt(square))
+            if held[a, b]:
+                continue
+            held[a, b] = True
             for i in range(-1, 2):
                 for j in range(max(b - 1, 0), min(b + 2, _ELEVATIONS)):
                     near[(a + i) % _AZIMUTHS, j] = True

@@ -173,7 +173,7 @@ class ObstacleFilter:
         self.manoeuvre.compare(position, velocity)
         if self.manoeuvre.is_settled:
             mean, covariance = self._imm.predict(np.array([self._imm.time + self.settings.manoeuvre.horizon]))
-            self.manoeuvre.add_prediction(mean[0], math.sqrt(float(np.trace(covariance[0]))))
+            self.manoeuvre.add_prediction(mean[0], math.sqrt(float(covariance[0].trace())))
 
     def centres(self, times: Array) -> Array:
         """Return the predicted centre (K, 3) (NED, m) at ``times`` (K,) (s)."""

@@ -77,16 +77,19 @@ class TrackList:
             track = tracks[younger]
             if track.map_shape is not None:
                 continue
+            near = np.flatnonzero(distances[rows].max(axis=0) <= s.merge_gate).tolist()
+            near = [body for body in near if body < younger or body >= len(tracks)]
+            if not near and not track.overlaps:
+                continue
             uavs = {clusters[row].uav for row in rows}
             apart = {body for body, cluster in zip(bodies, clusters, strict=True) if cluster.uav in uavs}
-            near = np.flatnonzero(distances[rows].max(axis=0) <= s.merge_gate).tolist()
             # Of a track that is not compared now, the count stays.
             omitted = (
                 {t.name for i, t in enumerate(tracks) if i >= younger or t.filter is None} if track.overlaps else ()
             )
             overlaps = {name: count for name, count in track.overlaps.items() if name in omitted}
             for older in near:
-                if older in apart or (older < len(tracks) and (older >= younger or tracks[older].filter is None)):
+                if older in apart or (older < len(tracks) and tracks[older].filter is None):
                     continue
                 name = names[older]
                 overlaps[name] = track.overlaps.get(name, 0) + 1
