@@ -1,7 +1,7 @@
 /** The top of the page: what happened, was it safe, by how much, and the command that flies it again. */
 
 import { copyable, h, number } from './dom.js';
-import { faults, happened, LIMITS, modes, position, safety, verdict } from './words.js';
+import { faults, happened, judged, modes, position, safety, verdict } from './words.js';
 
 /** @typedef {import('./data.js').Run} Run */
 
@@ -52,14 +52,14 @@ function faultCard(run, clock) {
 
 function limits(run) {
   if (run.meta.outcome === 'in flight') return null; // they are judged at the end
-  const entries = Object.entries(run.meta.summary.limits ?? {});
+  const entries = judged(run);
   if (!entries.length) return card('Limits', ['The mission has no limits on record.']);
-  const rows = entries.map(([name, { value, limit, held }]) => {
-    const [title, unit, sign, digits] = LIMITS[name] ?? [name.replaceAll('_', ' '), '', '', 3];
-    const flown = value === null ? 'none' : `${number(value, digits)} ${unit}`;
+  const rows = entries.map(({ what, value, unit: of, bound, limit, held }) => {
+    const unit = of === 'deg' ? '°' : of;
+    const flown = value === null ? 'none' : `${number(value, unit === '°' ? 1 : 3)} ${unit}`;
     return h(
       'tr', {},
-      h('td', {}, title), h('td.number', {}, flown), h('td.number', {}, `${sign} ${limit} ${unit}`),
+      h('td', {}, what), h('td.number', {}, flown), h('td.number', {}, `${bound} ${limit} ${unit}`),
       h(`td.${held ? 'held' : 'missed'}`, {}, held ? '✓ held' : '✗ NOT held'),
     );
   });

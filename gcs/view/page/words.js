@@ -16,14 +16,15 @@ const OUTCOMES = {
   'cut off': 'The records end before the flight does.',
 };
 
-export const LIMITS = {
-  position_rmse: ['position error, root mean square', 'm', '≤', 3],
-  payload_tilt_deg: ['largest payload angle', '°', '≤', 1],
-  clearance: ['clearance to obstacles and fence', 'm', '≥', 2],
-  uav_separation: ['distance between two UAVs', 'm', '≥', 2],
-  touchdown_speed: ['touchdown speed', 'm/s', '≤', 2],
-  arrival: ['distance from waypoints and landing place', 'm', '≤', 2],
-};
+/**
+ * Figures that the flight is judged by and that have a limit; of runs of earlier versions by their names alone.
+ * @param {Run} run
+ * @returns {{name: string, what: string, value: number|null, unit: string, bound: string, limit: number, held: boolean}[]}
+ */
+export function judged({ meta: { summary } }) {
+  if (summary.result) return summary.result.filter((/** @type {any} */ { limit }) => limit !== null);
+  return Object.entries(summary.limits ?? {}).map(([name, entry]) => ({ name, what: name.replaceAll('_', ' '), unit: '', bound: '', ...entry }));
+}
 
 /** Whether the flight is good, bad or in between, or still going on. @param {Run} run @returns {'good'|'warning'|'bad'|'live'} */
 export function verdict(run) {
@@ -91,7 +92,7 @@ export function safety(run) {
       found.push(`The guarantee did not hold: ${what} was ${number(entry.value, 3)} m${when} (limit ${number(entry.limit, 3)} m).`);
     }
   }
-  const missed = Object.entries(summary.limits ?? {}).filter(([, { held }]) => !held).map(([name]) => (LIMITS[name] ?? [name])[0]);
+  const missed = judged(run).filter(({ held }) => !held).map(({ what }) => what);
   if (missed.length) found.push(`Outside the mission's limits: ${missed.join(', ')} (see Limits).`);
   return found;
 }
