@@ -34,7 +34,7 @@ class FilmSettings:
     """Seconds of the flight in one of the film."""
     size: tuple[int, int] = (960, 540)
     """Width and height (pixels), both even: the encoder halves the resolution of colours."""
-    fps: int = 25
+    fps: int = 20
     view: str = "around"
     """A `View` of `page/film.js`."""
 

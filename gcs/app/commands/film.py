@@ -36,8 +36,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--speed", type=partial(number, least=0.01, most=100.0), default=1.0, metavar="X",
         help="seconds of the flight in one of the film (default: 1)")  # fmt: skip
     add("--size", type=_size, default=(960, 540), metavar="WxH", help="pixels (default: 960x540)")
-    add("--fps", type=partial(whole_number, least=1, most=60), default=25, metavar="N",
-        help="frames in a second of the film (default: 25)")  # fmt: skip
+    add("--fps", type=partial(whole_number, least=1, most=60), default=20, metavar="N",
+        help="frames in a second of the film (default: 20)")  # fmt: skip
     add("--camera", choices=VIEWS, default=VIEWS[0],
         help="around: from beside the flight, slowly to and fro, of a wide one what is near the payload (default); "
         "overview, follow and top: those of the report page")  # fmt: skip
