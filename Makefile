@@ -39,7 +39,7 @@ help:
 	@echo "make benchmark-campaign  throughput of parallel flights against a single one's"
 	@echo "make benchmark-view   CPU cost of a flight with its live view against that without"
 	@echo "make docs         write docs/settings.md, docs/failsafes.md and NOTICE from what they are about"
-	@echo "make pictures     fly and film the moving pictures of README.md (needs Chromium; about 2 min of CPU)"
+	@echo "make pictures     fly, film and photograph the pictures of README.md (needs Chromium; about 6 min of CPU)"
 	@echo "make page         bundle the scripts of the report page anew (needs node and npm)"
 	@echo "make install      only install, into $(VENV)"
 	@echo "make clean        remove $(VENV) and the caches"
@@ -125,6 +125,7 @@ pictures: $(COMPILED)
 	$(FILM) $(PICTURES)/spheres --from 11 --to 71 --out docs/two_spheres.webp
 	$(VENV)/bin/gcs fly missions/pole_course.toml --run-dir $(PICTURES)/poles
 	$(FILM) $(PICTURES)/poles --from 10 --to 72 --out docs/pole_course.webp
+	$(VENV)/bin/python tests/packaging/screenshots.py $(PICTURES)/spheres $(PICTURES) docs
 
 # Needs node and npm, which neither the installation nor a flight does.
 page:
