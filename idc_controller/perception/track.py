@@ -204,4 +204,4 @@ class Track:
         return times - (now - self.detections.last) if self._coasts_at_rest(now) else times
 
     def _coasts_at_rest(self, now: float) -> bool:
-        return self.is_static and now - self.detections.last > self.settings.retention.coasting_after
+        return now - self.detections.last > self.settings.retention.coasting_after and self.is_static

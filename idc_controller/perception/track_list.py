@@ -110,18 +110,26 @@ class TrackList:
             observed: time before which what moves would have been elsewhere (s).
         """
 
-        def is_absorbed(track: Track) -> bool:
-            rests = track.is_static and not track.is_bound_to_region
+        tracks = [track for track in self.tracks if track.map_shape is None]
+        if not tracks:
+            return
+        points = [track.detections.points for track in tracks]
+        sizes = np.array([len(of_track) for of_track in points])
+        starts, everywhere = np.cumsum(sizes) - sizes, np.concatenate(points)
+        held, held_for_long = (
+            (2 * np.add.reduceat(stands(everywhere, since), starts, dtype=int) > sizes).tolist()
+            for since in (math.inf, observed)
+        )
+
+        def is_absorbed(track: Track, is_held: bool, is_held_for_long: bool) -> bool:
             # What stops and goes may have come to rest for a moment only.
-            may_stand = track.seems_to_stand or (track.is_static and track.is_bound_to_region)
-            points = track.detections.points
+            rests = track.is_static and not track.is_bound_to_region
+            return (rests and is_held) or (is_held_for_long and (track.seems_to_stand or track.is_static))
 
-            def are_held(since: float) -> bool:
-                return bool(2 * np.count_nonzero(stands(points, since)) > len(points))
-
-            return (rests and are_held(math.inf)) or (may_stand and are_held(observed))
-
-        self.tracks = [track for track in self.tracks if track.map_shape is not None or not is_absorbed(track)]
+        absorbed = {
+            track for track, *of_track in zip(tracks, held, held_for_long, strict=True) if is_absorbed(track, *of_track)
+        }
+        self.tracks = [track for track in self.tracks if track not in absorbed]
 
     def retain(self, now: float, sensing_lost: bool, in_field_of_view: Callable[[Track], bool]) -> list[str]:
         """Delete tracks that are not detected; return the names of those that counted as obstacles.
