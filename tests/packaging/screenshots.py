@@ -50,11 +50,10 @@ def main(run, folder, out):
     run_gcs(["faults", str(campaign), "--out", str(folder / "campaign"), "--keep", "all"])
     run_gcs(["report", str(folder / "campaign")])
     clean, fault = read_run(run), read_run(folder / "fault")
-    at_alarm = "report.clock.set(report.run.events.find((event) => event.kind === 'alarm').start)"
+    estimation = "[...document.querySelectorAll('#plots summary')].find((head) => head.textContent === 'Estimation')"
     pages = {
         "report": (write_report(clean), ""),
-        "report_fault": (write_report(fault), at_alarm),
-        "report_plots": (write_report(fault), "document.getElementById('plots').scrollIntoView()"),
+        "report_fault": (write_report(fault), f"{estimation}.scrollIntoView()"),
         "report_comparison": (write_report(fault, clean), "report.scene.setCamera('free')"),
         "report_campaign": (folder / "campaign" / "report.html", ""),
     }
