@@ -69,7 +69,8 @@ def _meant(word: str, meanings: Mapping[str, str]) -> str | None:
     if word in meanings:
         return meanings[word]
     likeness = {known: _likeness(word, known) for known in meanings}
-    nearest = max(likeness, key=lambda known: likeness[known], default="")
+    # Of a name and an alias that are equally alike, the name.
+    nearest = max(likeness, key=lambda known: (likeness[known], known == meanings[known]), default="")
     return meanings[nearest] if nearest and likeness[nearest] > 0.0 else None
 
 

@@ -26,7 +26,7 @@ def event(kind: str, start: float, end: float | None, source: str, text: str, se
 
 def events(run: RunData, *, is_over: bool = True) -> list[Event]:
     """Return all events of a run, in the order of time; of one that is not over without waypoints, still ahead."""
-    found = [*phases(run), *modes(run), *faults(run), *alarms(run), *isolations(run)]
+    found = [*phases(run), *modes(run), *faults(run), *alarms(run), *isolations(run), *contacts(run)]
     if is_over:
         found += waypoints(run)
     return sorted(found, key=lambda each: each["start"])
@@ -96,6 +96,13 @@ def isolations(run: RunData) -> Iterable[Event]:
             if states[begin] == "isolated":
                 until = float(rows["time_s"][end]) if end < len(rows) else None
                 yield event("isolation", float(rows["time_s"][begin]), until, source, channel, "error")
+
+
+def contacts(run: RunData) -> Iterable[Event]:
+    """Yield when something began to touch where nothing had before: payload, UAVs and obstacles."""
+    touches = np.zeros(0, dtype=bool) if run.contacts is None else run.contacts > 0
+    for row in np.flatnonzero(touches & ~np.concatenate([[False], touches])[:-1]).tolist():
+        yield event("contact", float(run.time[row]), None, "team", "something touches", "error")
 
 
 def waypoints(run: RunData) -> Iterable[Event]:

@@ -102,6 +102,7 @@ def test_fault_is_read_and_described(tmp_path):
         ),
         (GOOD + fault("stall", "duration = 1", "probability = 1"), "probability", "fault[2].probability: unknown key"),
         (fault("gps_loss"), "kind", "fault[1].kind: there is no kind 'gps_loss': did you mean 'position_lost'?"),
+        (fault("stuck", 'channel = "atitude"'), "channel", "found \"atitude\": did you mean 'attitude'?"),
         (fault("packet_loss", "prob = 0.1"), "prob =", "fault[1].prob: unknown key: did you mean 'probability'?"),
         (fault("latency", "latency = 0.1"), "latency =", "fault[1].latency: unknown key: did you mean 'delay'?"),
         (fault("partition", "duratoin = 5.0"), "duratoin", "fault[1].duratoin: unknown key: did you mean 'duration'?"),

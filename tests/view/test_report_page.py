@@ -209,7 +209,9 @@ def test_events_tell_faults_alarms_and_isolated_channels(folder):
         ("alarm", 3.6, None, "vehicle 1", "measurements rejected: position"),
         ("alarm", 3.95, None, "vehicle 1", "channel isolated: position"),
         ("isolation", 3.95, None, "vehicle 1", "position"),
+        ("contact", 7.0, None, "team", "something touches"),
         ("mode", 8.0, 10.0, "vehicle 2", "AUTO.LAND by a failsafe"),
+        ("contact", 8.0, None, "team", "something touches"),
     ]
     # With the innovation tests on record, these tell from when to when.
     with TableWriter(folder / "innovations.csv", ("time_s", "source", "channel", "test_ratio", "state")) as table:

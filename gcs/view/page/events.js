@@ -2,7 +2,7 @@
 
 import { h } from './dom.js';
 
-const TITLES = { phase: 'phase', mode: 'mode', fault: 'fault', alarm: 'alarm', isolation: 'isolated', waypoint: 'waypoint' };
+const TITLES = { phase: 'phase', mode: 'mode', fault: 'fault', alarm: 'alarm', isolation: 'isolated', contact: 'contact', waypoint: 'waypoint' };
 
 /**
  * @param {import('./data.js').Run} run @param {import('./clock.js').Clock} clock

@@ -23,7 +23,7 @@ export function cards(run, clock) {
   return h(
     'div.cards', { tabIndex: 0, role: 'region', 'aria-label': 'what happened' },
     card('What happened', happened(run)),
-    card('Was it safe?', safety(run), run.clearance && jump(clock, run.clearance.time, 'show the least clearance')),
+    card('Was it safe?', safety(run), ...moments(run, clock)),
     faultCard(run, clock),
     card('Position: error and avoidance', position(run)),
     limits(run),
@@ -33,6 +33,14 @@ export function cards(run, clock) {
 
 function card(title, sentences, ...more) {
   return h('section.card', {}, h('h2', {}, title), ...sentences.map((text) => h('p', {}, text)), ...more);
+}
+
+function moments(run, clock) {
+  const contact = run.events.find(({ kind }) => kind === 'contact');
+  return [
+    contact && jump(clock, contact.start, 'show the first contact'), contact && run.clearance && ', ',
+    run.clearance && jump(clock, run.clearance.time, 'show the least clearance'),
+  ];
 }
 
 function jump(clock, time, text) {

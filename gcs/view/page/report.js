@@ -36,8 +36,9 @@ export class ReportPage {
     keyboard(run, this.clock, this.closing.signal);
     this.scene = this.newScene();
     this.plots = new Plots(plots, run, this.clock, ghost);
-    // The moment that says most: the latest, the least clearance, or else the beginning.
-    this.clock.set(live ? run.meta.end : (run.clearance?.time ?? run.meta.begin));
+    // The moment that says most: the latest, the first contact, the least clearance, or else the beginning.
+    const contact = run.events.find(({ kind }) => kind === 'contact');
+    this.clock.set(live ? run.meta.end : (contact?.start ?? run.clearance?.time ?? run.meta.begin));
   }
 
   /** Make all parts but scene and plots anew. */

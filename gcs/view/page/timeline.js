@@ -8,7 +8,7 @@ import { h } from './dom.js';
 export const LANES = [
   { name: 'phase', kinds: ['phase', 'waypoint'], title: 'phases' },
   { name: 'fault', kinds: ['fault'], title: 'faults' },
-  { name: 'alarm', kinds: ['isolation', 'mode', 'alarm'], title: 'alarms' },
+  { name: 'alarm', kinds: ['isolation', 'mode', 'alarm', 'contact'], title: 'alarms' },
 ];
 
 const PLAY = 'M3 1v12l9-6z';

@@ -56,7 +56,9 @@ export function safety(run) {
   const found = [];
   const contacts = summary.contacts;
   if (contacts !== null && contacts !== undefined) {
-    found.push(contacts === 0 ? 'Nothing touched.' : `There were ${contacts} contacts.`);
+    const first = run.events.find(({ kind }) => kind === 'contact');
+    const since = first ? `, from ${number(first.start, 1)} s on` : '';
+    found.push(contacts === 0 ? 'Nothing touched.' : `NOT safe: there ${contacts === 1 ? 'was 1 contact' : `were ${contacts} contacts`}${since}.`);
   }
   const least = run.clearance;
   if (run.meta.outcome === 'in flight') {
@@ -114,7 +116,7 @@ export function position(run) {
   if (avoided) {
     const total = kept.avoiding.reduce((sum, [begin, end]) => sum + end - begin, 0);
     found.push(
-      `Wanted: for ${number(total, 0)} s the plan left the mission's reference, to avoid obstacles or to wait for what ` +
+      `Avoidance: for ${number(total, 0)} s the plan left the mission's reference, to avoid obstacles or to wait for what ` +
         `comes, by up to ${number(kept.deviationMax)} m.`,
     );
     const rest = rootMeanSquare(elsewhere);
@@ -157,6 +159,7 @@ export function faults(run) {
         : 'no alarm';
       for (const isolation of isolations) {
         text += `; ${isolation.text} of ${isolation.source} isolated after ${number(isolation.start - fault.start)} s`;
+        if (fault.end !== null && isolation.start > fault.end) text += ', when the fault was over';
         text += isolation.end === null ? '' : `, used again from ${number(isolation.end, 1)} s`;
       }
       return { text: `${text}.`, event: fault };
