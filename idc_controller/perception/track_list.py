@@ -126,10 +126,12 @@ class TrackList:
             rests = track.is_static and not track.is_bound_to_region
             return (rests and is_held) or (is_held_for_long and (track.seems_to_stand or track.is_static))
 
-        absorbed = {
-            track for track, *of_track in zip(tracks, held, held_for_long, strict=True) if is_absorbed(track, *of_track)
+        kept = {
+            id(track)
+            for track, *of_track in zip(tracks, held, held_for_long, strict=True)
+            if not is_absorbed(track, *of_track)
         }
-        self.tracks = [track for track in self.tracks if track not in absorbed]
+        self.tracks = [track for track in self.tracks if track.map_shape is not None or id(track) in kept]
 
     def retain(self, now: float, sensing_lost: bool, in_field_of_view: Callable[[Track], bool]) -> list[str]:
         """Delete tracks that are not detected; return the names of those that counted as obstacles.
