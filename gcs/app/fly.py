@@ -113,8 +113,9 @@ def fly(
         if others := differences():
             LOG.warning(others)
         if options.view:
-            view = viewing.enter_context(LiveView(run_dir))
-            LOG.warning("live view: %s", view.url)
+            view = LiveView(run_dir)
+            viewing.callback(view.end)  # with all that is written below; nobody waits for a browser
+            print(f"live view: {view.url}", file=sys.stderr, flush=True)
         if vehicle_sim is None and options.connect is None:
             vehicle_sim = resources.enter_context(ForkedProgram(PROGRAM))
         connection = resources.enter_context(closing(Connection(_local_address(options.urls))))

@@ -11,7 +11,7 @@ from pathlib import Path
 from gcs.mavlink.address import THIS_MACHINE
 
 _PROGRAM = "gcs.view.live"
-_END_TIMEOUT = 20.0  # s for the whole report, to a browser that takes it
+_END_TIMEOUT = 25.0  # s, after which it has ended by itself
 
 
 class LiveView:
@@ -23,18 +23,23 @@ class LiveView:
     def __init__(self, run_dir: Path) -> None:
         with socket.create_server((THIS_MACHINE, 0)) as listener:
             self.url = f"http://{THIS_MACHINE}:{listener.getsockname()[1]}/"
-            command = [sys.executable, "-m", _PROGRAM, str(run_dir), str(listener.fileno())]
+            # -P: nothing of the folder in which the program was started is imported.
+            command = [sys.executable, "-P", "-m", _PROGRAM, str(run_dir), str(listener.fileno())]
             # In a session of its own: Ctrl-C at the terminal is for the ground, which lands the vehicles first.
             self._process = subprocess.Popen(
                 command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, pass_fds=[listener.fileno()],
                 start_new_session=True,
             )  # fmt: skip
 
-    def close(self) -> None:
-        """Let it send the whole report to the browsers that look, and end it."""
+    def end(self) -> None:
+        """Let it send the whole report to the browsers that look, and then end by itself."""
         assert self._process.stdin is not None
         with contextlib.suppress(OSError):
             self._process.stdin.close()
+
+    def close(self) -> None:
+        """Let it send the whole report, and wait until it has ended."""
+        self.end()
         try:
             self._process.wait(_END_TIMEOUT)
         except subprocess.TimeoutExpired:

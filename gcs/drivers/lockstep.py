@@ -25,11 +25,13 @@ class Pace:
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         self._speed, self._clock, self._sleep = speed, clock, sleep
-        self._offset = -clock()  # of simulated from wall time (s of wall time)
+        self._offset: float | None = None  # of simulated from wall time (s of wall time)
 
     def hold(self, now: float) -> None:
         """Wait until the simulated time ``now`` (s) is due."""
         due = now / self._speed
+        if self._offset is None:  # the world may have served another ground before
+            self._offset = due - self._clock()
         early = due - (self._clock() + self._offset)
         if early > 0.0:
             self._sleep(early)

@@ -63,7 +63,8 @@ class MonitorAlarm(ScopedAlarm):
     STUCK_SENSOR = (Scope.CLEAR_OF_GROUND, Severity.ERROR, "check the sensor",
         "a channel repeats one value")
     CHANNEL_ISOLATED = (Scope.CLEAR_OF_GROUND, Severity.ERROR, "check the sensor",
-        "a channel was rejected for half a second, and is isolated until it has been accepted for 1 s")
+        "a channel was rejected for half a second, and is isolated until it has been accepted for 1 s; of a position "
+        "and a velocity that contradict each other both")
     INCONSISTENT_STATE = (Scope.CLEAR_OF_GROUND, Severity.ERROR, "check navigation",
         "the positions of most vehicles do not follow from their velocities while the payload's do, or the other way "
         "round; or an attitude does not follow from its rates: the inconsistent ones are isolated from then on")

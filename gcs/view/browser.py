@@ -37,12 +37,14 @@ class Browser:
         self.errors: list[str] = []
         """Errors of the console and uncaught exceptions, since the last page was opened."""
         arguments = [
-            find_browser(), "--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+            find_browser(), "--headless", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
             "--disable-gpu",  # of the page around the canvas, which costs less without
             "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
             "--disable-sync", "--disable-extensions", "--hide-scrollbars", "--remote-debugging-pipe",
             f"--user-data-dir={profile}", "about:blank",
         ]  # fmt: skip
+        if os.geteuid() == 0:  # for whom Chromium has none
+            arguments.insert(1, "--no-sandbox")
         to_browser, self._commands = os.pipe()
         self._answers, from_browser = os.pipe()
         # The browser reads commands from descriptor 3 and answers on 4.
@@ -122,7 +124,8 @@ class Browser:
         """Return the value of an expression of JavaScript, or of its promise."""
         result = self.call("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in result:
-            raise GcsError(f"Chromium: {result['exceptionDetails']['exception']['description']}")
+            thrown = result["exceptionDetails"]
+            raise GcsError(f"Chromium: {thrown.get('exception', {}).get('description', thrown['text'])}")
         return result["result"].get("value")
 
     def wait(self, condition: str) -> None:

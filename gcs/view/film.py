@@ -3,7 +3,8 @@
 import json
 import subprocess
 import tempfile
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,7 +20,8 @@ FILM = "film.mp4"
 ENCODERS = {
     ".mp4": ["-c:v", "libx264", "-preset", "veryfast", "-crf", "23", "-pix_fmt", "yuv420p", "-movflags", "+faststart"],
     ".webp": ["-c:v", "libwebp_anim", "-quality", "60", "-compression_level", "4", "-loop", "0"],
-    ".gif": ["-filter_complex", "split[a][b];[a]palettegen=max_colors=96[p];[b][p]paletteuse=dither=none"],
+    # A palette for each frame: one for all would keep all frames in memory.
+    ".gif": ["-filter_complex", "split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1:dither=none"],
 }
 """Options of ffmpeg by the suffix of the file."""
 
@@ -65,9 +67,14 @@ def write_film(run: RunData, settings: FilmSettings, out: Path | None = None) ->
     times = settings.times(run)
     with extra("film", "gcs film"):
         from imageio_ffmpeg import get_ffmpeg_exe
+    try:
+        ffmpeg = get_ffmpeg_exe()
+    except RuntimeError as error:
+        raise UnusableInput(f"gcs film: {error}") from None
     part = out.with_name(f".{out.stem}.part{out.suffix}")
     try:
-        part.touch()
+        with _writing(out):
+            part.touch()
         with tempfile.TemporaryDirectory(prefix="gcs-film-", ignore_cleanup_errors=True) as folder:
             page = write_page(Path(folder) / "report.html", report_text([run]))
             with Browser(Path(folder) / "profile") as browser:
@@ -75,14 +82,21 @@ def write_film(run: RunData, settings: FilmSettings, out: Path | None = None) ->
                 if not browser.value("Boolean(window.report?.scene)"):
                     raise GcsError(f"gcs film: the browser does not show the page: {'; '.join(browser.errors)}")
                 browser.value(f"window.draw = report.film({json.dumps(settings.view)})")
-                _encode(browser, times, settings.fps, get_ffmpeg_exe(), part)
-        part.replace(out)
-    except OSError as error:
-        raise UnusableInput(f"{out}: cannot be written: {error.strerror}") from None
+                _encode(browser, times, settings.fps, ffmpeg, part)
+        with _writing(out):
+            part.replace(out)
     finally:
         with suppress(OSError):
             part.unlink(missing_ok=True)
     return out
+
+
+@contextmanager
+def _writing(out: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise UnusableInput(f"{out}: cannot be written: {error.strerror}") from None
 
 
 def _encode(browser: Browser, times: np.ndarray, fps: int, ffmpeg: str, path: Path) -> None:
@@ -91,7 +105,10 @@ def _encode(browser: Browser, times: np.ndarray, fps: int, ffmpeg: str, path: Pa
         "mjpeg", "-i", "-", *ENCODERS[path.suffix], str(path),
     ]  # fmt: skip
     with tempfile.TemporaryFile() as said:
-        encoder = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=said, start_new_session=True)
+        try:
+            encoder = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=said, start_new_session=True)
+        except OSError as error:
+            raise GcsError(f"gcs film: {ffmpeg}: {error.strerror}") from None
         assert encoder.stdin is not None
         try:
             with suppress(BrokenPipeError), encoder.stdin as frames:

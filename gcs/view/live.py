@@ -36,6 +36,8 @@ PERIOD = 0.2
 CPU_SHARE = 0.2
 """Of one core at most, by a longer time between messages: those of a long flight take longer."""
 NICENESS = 10
+END_TIMEOUT = 20.0
+"""Time for the whole report to reach the browsers (s); one that does not take it is left."""
 
 
 class Records:
@@ -101,7 +103,7 @@ def show(folder: Path, listener: socket.socket, is_over: threading.Event) -> Non
     # What is no web socket's opening, from whatever calls here, is no matter for the terminal.
     logger = logging.getLogger("websockets.server")
     logger.setLevel(logging.CRITICAL)
-    with serve(send, sock=listener, origins=own, process_request=answer, logger=logger) as server:
+    with serve(send, sock=listener, origins=own, process_request=answer, logger=logger, compression=None) as server:
         threading.Thread(target=server.serve_forever).start()
         is_over.wait()
         for sender in senders:
@@ -118,6 +120,8 @@ def main(arguments: list[str]) -> None:
             while sys.stdin.buffer.read(1):
                 pass
         is_over.set()
+        time.sleep(END_TIMEOUT)
+        os._exit(1)  # a sender waits for a browser that does not read
 
     threading.Thread(target=wait_for_end, daemon=True).start()
     show(Path(arguments[0]), socket.socket(fileno=int(arguments[1])), is_over)

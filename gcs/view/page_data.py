@@ -35,6 +35,7 @@ RATE_LONG, LONG = 25.0, 120.0
 _SERIES_MAX = 6
 """Barriers whose clearance is shown one by one: those that come nearest."""
 _MISSING = 65535
+_CUT_OFF = "the records end before the flight does"
 _XYZ, _QUATERNION = ("x_m", "y_m", "z_m"), ("qw", "qx", "qy", "qz")
 _NED = ("north", "east", "down")
 
@@ -288,6 +289,9 @@ class PageData:
             centre = (run.setting("payload", "mesh") or {}).get("centre_of_mass", np.zeros(3))
             points = np.reshape(attachments, (-1, 3)) - np.asarray(centre)
         excluded = mission.get("excluded") or []
+        by_itself = (run.manifest.get("command") or [""])[0] == "vehicle-sim"
+        cut_off = "no ground station" if by_itself else "cut off"
+        outcome = run.summary.get("outcome", cut_off) if self._is_over else "in flight"
         return {
             "format": 1,
             "mission": mission.get("name") or run.folder.resolve().name,
@@ -296,8 +300,8 @@ class PageData:
             "start": run.manifest.get("start"),
             "source": run.source,
             "command": command(run.manifest.get("command") or ()),
-            "outcome": run.summary.get("outcome", "cut off") if self._is_over else "in flight",
-            "reason": run.summary.get("reason", "the records end before the flight does") if self._is_over else "",
+            "outcome": outcome,
+            "reason": run.summary.get("reason", _CUT_OFF if outcome == "cut off" else ""),
             "summary": run.summary,
             "begin": run.time[0] if len(run.time) else 0.0,
             "end": run.time[-1] if len(run.time) else 0.0,

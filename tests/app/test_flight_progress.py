@@ -45,7 +45,7 @@ vehicles = [3]
 direction = "telemetry"
 probability = 0.2
 """
-ISOLATED = "vehicle 2: channel_isolated (position)"
+ISOLATED = "vehicle 2: channel_isolated (position, velocity)"
 CONTROL = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 QUIET = argparse.Namespace(verbose=0, quiet=0, log_file=None)
 

@@ -150,7 +150,8 @@ def test_pace_waits_for_what_is_early_and_does_not_make_up_for_what_is_late():
         wall[0] += duration
 
     pace = Pace(2.0, clock=lambda: wall[0], sleep=sleep)
+    pace.hold(30.0)  # of a world that has served another ground before
     for simulated, spent in ((0.5, 0.05), (1.0, 0.05), (1.5, 3.0), (2.0, 0.05)):
         wall[0] += spent
-        pace.hold(simulated)
+        pace.hold(30.0 + simulated)
     assert waits == pytest.approx([0.2, 0.2, 0.2]) and wall[0] == pytest.approx(103.75)

@@ -1,7 +1,6 @@
 """Executors of a campaign: whoever carries its flights out, and whatever dies, the results are the same."""
 
 import contextlib
-import json
 import os
 import signal
 import subprocess
@@ -220,9 +219,10 @@ def scheduler(tmp_path):
         dask("worker", "--scheduler-file", str(file), "--nworkers", "2", "--nthreads", "1"),
     ):
         wait_for_file(tmp_path, file.name)
-        address = json.loads(file.read_text())["address"]
-        with distributed.Client(address) as client:
+        # The file is there before it is written, for which the client waits.
+        with distributed.Client(scheduler_file=str(file)) as client:
             client.wait_for_workers(2)
+            address = client.scheduler.address
         yield address
 
 

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import sys
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -94,7 +95,8 @@ def run(arguments: argparse.Namespace) -> int:
     with ExitStack() as started:
         # Before there are threads: those of the progress line.
         vehicle_sim = None if options.connect is not None else started.enter_context(ForkedProgram(PROGRAM))
-        progress = started.enter_context(FlightProgress(console, phases_logged=arguments.verbose > 0))
+        logged = arguments.verbose > 0 and sys.stderr.isatty()
+        progress = started.enter_context(FlightProgress(console, phases_logged=logged))
         result = fly(options, mission, progress.update, vehicle_sim)
     files: list[Path] = []
     if result.flown and not arguments.no_pictures:

@@ -14,10 +14,12 @@ export function follow(url, element, decoded) {
   /** @type {ReportPage|null} */
   let report = null;
   let timer = 0;
+  let isOver = false;
 
   /** @param {{header: any, blob: string, final: boolean}} message */
   async function take({ header, blob, final }) {
     const run = await decoded(header, blob);
+    isOver = final;
     if (report && !final) {
       report.extend(run);
       timer ||= window.setTimeout(() => {
@@ -46,8 +48,12 @@ export function follow(url, element, decoded) {
       if (report) {
         report.clock.live = false;
         report.clock.following = false;
+        if (!isOver) {
+          report.run.meta.outcome = 'connection lost';
+          report.refresh();
+        }
         resolve(undefined);
-      } else reject(new Error('the flight has ended before anything was flown'));
+      } else reject(new Error('the connection ended before anything was flown'));
     });
   });
 }

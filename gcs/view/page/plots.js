@@ -51,8 +51,9 @@ export class Plots {
   refresh() {
     this.groups = groups(this.run, this.ghost);
     const figures = this.groups.flatMap((group) => group.figures);
+    const kinds = new Set(this.run.events.map(({ kind }) => kind));
     const names = (/** @type {import('./figures.js').Figure} */ figure) => [figure.title, ...figure.series.map(({ label }) => label)].join();
-    if (figures.map(names).join() !== this.shown.map(({ figure }) => names(figure)).join()) {
+    if (kinds.size !== this.kinds.size || figures.map(names).join() !== this.shown.map(({ figure }) => names(figure)).join()) {
       this.draw();
       return;
     }
@@ -82,8 +83,9 @@ export class Plots {
     this.observer.disconnect();
     for (const { plot } of this.shown) plot.destroy();
     this.shown = [];
-    const kinds = new Set(this.run.events.map((event) => event.kind));
-    const keys = BACKGROUND.filter(({ kind }) => kinds.has(kind)).map(({ kind, label }) =>
+    this.kinds = new Set(this.run.events.map((event) => event.kind));
+    const closed = [...this.element.querySelectorAll('details:not([open]) > summary')].map((head) => head.textContent);
+    const keys = BACKGROUND.filter(({ kind }) => this.kinds.has(kind)).map(({ kind, label }) =>
       h('span.key', {}, h(`span.swatch.${kind}`, {}), label),
     );
     const reset = h('button', { type: 'button', onclick: () => this.zoom(this.clock.begin, this.clock.end) }, 'whole flight');
@@ -94,7 +96,7 @@ export class Plots {
     );
     for (const { title, note, figures } of this.groups) {
       const body = h('div.plots', {});
-      this.element.append(h('details', { open: true }, h('summary', {}, title), note ? h('p.hint', {}, note) : null, body));
+      this.element.append(h('details', { open: !closed.includes(title) }, h('summary', {}, title), note ? h('p.hint', {}, note) : null, body));
       for (const figure of figures) this.add(body, figure);
     }
   }
@@ -168,8 +170,10 @@ export class Plots {
 
   /** Show all plots from one time to another (s). */
   zoom(begin, end) {
-    this.view = [Math.max(begin, this.clock.begin), Math.min(end, this.clock.end)];
-    for (const { plot } of this.shown) plot.setScale('x', { min: this.view[0], max: this.view[1] });
+    const view = [Math.max(begin, this.clock.begin), Math.min(end, this.clock.end)];
+    // The whole flight may go on.
+    this.view = view[0] > this.clock.begin || view[1] < this.clock.end ? view : null;
+    for (const { plot } of this.shown) plot.setScale('x', { min: view[0], max: view[1] });
   }
 
   background(u, figure) {

@@ -84,7 +84,8 @@ export class ReportPage {
 
   /** Show what has come to be on record in words, plots and scales, too, which takes longer. */
   refresh() {
-    this.tell();
+    // What is in use would be taken out of the hands of the user.
+    if (!this.places.timeline.querySelector(':active, :focus-visible')) this.tell();
     this.plots.refresh();
     if (this.scene?.isOutgrown()) this.renewScene();
   }

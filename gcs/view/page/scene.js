@@ -285,6 +285,7 @@ export class Scene {
     this.world.traverse((/** @type {any} */ part) => part.geometry?.dispose());
     this.palette.dispose();
     this.renderer.dispose();
+    this.renderer.forceContextLoss(); // browsers keep few
     this.renderer.domElement.remove();
   }
 }

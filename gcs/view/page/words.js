@@ -13,6 +13,8 @@ const OUTCOMES = {
   lost: 'The records end without the vehicles being known to be on the ground.',
   collided: 'Something touched: a vehicle or the payload came into contact.',
   'in flight': 'The flight is going on.',
+  'connection lost': 'The connection to the flight was lost; this is what had come until then. Open the page again, or see the run folder.',
+  'no ground station': 'The simulator by itself: no ground station has records in this folder.',
   'cut off': 'The records end before the flight does.',
 };
 

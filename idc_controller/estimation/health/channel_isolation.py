@@ -74,13 +74,14 @@ class ChannelIsolation:
             return
         limit = self._settings.rejections
         for channel, part in _channels(stack):
-            if not tested[part].all():
+            if channel in self._acceptances or not tested[part].all():
                 continue
             count = self._rejections.pop(channel, 0) + (-1 if accepted[part].all() else 1)
             is_wrong = channel.kind is not Position or is_inconsistent(channel.source)
             if count >= limit and is_wrong and self._is_no_majority_with(channel.source):
                 for wrong in self._suspected(channel):
                     self._acceptances.setdefault(wrong, 0)
+                    self._rejections.pop(wrong, None)
             elif count > 0:
                 self._rejections[channel] = min(count, limit)
 
