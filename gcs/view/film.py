@@ -35,7 +35,7 @@ class FilmSettings:
     speed: float = 1.0
     """Seconds of the flight in one of the film."""
     size: tuple[int, int] = (960, 540)
-    """Width and height (pixels), both even: the encoder halves the resolution of colours."""
+    """Width and height (pixels), both even, as colours are subsampled (4:2:0)."""
     fps: int = 20
     view: str = "around"
     """A `View` of `page/film.js`."""

@@ -31,7 +31,7 @@ _CIRCLE_SEGMENTS = 32
 ROW = 14
 """Numbers of a body in arrays of bodies, see :attr:`Shape.row`."""
 
-_UPRIGHT = np.eye(3)
+_UPRIGHT = np.eye(3)  # of all upright shapes: never written to
 
 LENGTH: Mapping[str, str] = {"unit": "m"}
 """Metadata of a shape's field that is a length, or a tuple of lengths (m): positive; a key of the mission file."""

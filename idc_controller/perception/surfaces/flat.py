@@ -27,12 +27,11 @@ class FlatSurface:
         self._thickness_is_observed = False
         extensions = {1: settings.side_extension, 2: settings.top_extension}
         self._ends = {(axis, sign): EndOfSurface(extensions[axis], settings) for axis in (1, 2) for sign in (1, -1)}
-
         if known is not None:
             self.shape, self.offset, self.size_sigma = known, np.zeros(3), 0.0
 
     def _describe(self) -> None:
-        """Keep what follows from a fit."""
+        """Keep what follows from a fit; of a surface that is not known there is none before the first."""
         ends = self._ends
         lo = np.array([-self._thickness, -ends[1, -1].outermost, -ends[2, -1].outermost])
         hi = np.maximum(np.array([0.0, ends[1, 1].outermost, ends[2, 1].outermost]), lo + 0.05)

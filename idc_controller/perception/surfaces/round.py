@@ -27,12 +27,11 @@ class RoundSurface:
         self._radius = known.columns.radius if known else settings.radius
         self._variance = 1e-6 if known else settings.radius_sigma**2
         self._top = EndOfSurface(settings.pole_extension, settings)
-
         if known is not None:
             self._describe()
 
     def _describe(self) -> None:
-        """Keep what follows from a fit."""
+        """Keep what follows from a fit; of a surface that is not known there is none before the first."""
         self.shape: Shape = self.known or (
             Pole(self._radius, max(self._top.outermost, 0.1)) if self._is_pole else Sphere(self._radius)
         )
