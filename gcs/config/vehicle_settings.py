@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from gcs.config.flight_settings import DEFAULTS
+from gcs.mavlink.settings import PeerSettings
 from idc_controller.settings import SettingsTable, Share, derived, setting
 from idc_controller.trajectory.settings import BrakingSettings
 
@@ -129,15 +130,9 @@ class StreamIntervals(SettingsTable):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class VehicleLinkSettings(SettingsTable):
-    """Service of a vehicle to its peers: every address that sends it valid MAVLink."""
+class VehicleLinkSettings(PeerSettings):
+    """Service of a vehicle to its peers."""
 
-    peer_timeout: float = 10.0  # s; without a message from a peer until its streams stop
-    peers_max: int = 8  # peers served at once, beside the ports of clients to which it always sends
-    replies_max: int = 200  # answers queued for one peer; more requests at once are dropped
-    interval_min: float = 0.004  # s; shortest interval that SET_MESSAGE_INTERVAL may set: the onboard loop's period
-    repeat_interval: float = 0.04  # s; between the repetitions of a message whose content changed
-    repeats: int = 3  # repetitions of a message whose content changed: a datagram may be lost
     setpoint_streams_max: int = 16  # senders of set-points served at once
     # s; a set-point older than the last by less was overtaken on the link; by more: its clock was set
     reordering_max: float = 1.0

@@ -48,6 +48,18 @@ class IdCheckSettings(SettingsTable):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class PeerSettings(SettingsTable):
+    """Service of an aircraft to its peers: every address that sends it valid MAVLink."""
+
+    peer_timeout: float = 10.0  # s; without a message from a peer until its streams stop
+    peers_max: int = 8  # peers served at once, beside the ports of clients to which it always sends
+    replies_max: int = 200  # answers queued for one peer; more requests at once are dropped
+    interval_min: float = 0.004  # s; shortest interval that SET_MESSAGE_INTERVAL may set: the onboard loop's period
+    repeat_interval: float = 0.04  # s; between the repetitions of a message whose content changed
+    repeats: int = 3  # repetitions of a message whose content changed: a datagram may be lost
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class MavlinkSettings(SettingsTable):
     """All of the above."""
 

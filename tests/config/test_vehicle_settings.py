@@ -15,8 +15,8 @@ from gcs.config.vehicle_settings import SetpointSettings, StreamIntervals
 from gcs.mission.model import Fault
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.autopilot import Autopilot
-from vehicle_sim.autopilot.parameter_table import vehicle_parameters
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
+from vehicle_sim.autopilot.vehicle_parameters import vehicle_parameters
 from vehicle_sim.faults.fault_injector import FaultInjector
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.multibody import urdf_text

@@ -238,7 +238,18 @@ def mavlink_modules_imported(path):
 
 def test_vehicles_import_only_the_protocol_of_the_ground_station():
     used = {name for path in (ROOT / "vehicle_sim").rglob("*.py") for name in mavlink_modules_imported(path)}
-    assert used == PROTOCOL
+    assert used == {*PROTOCOL, "services"}
+
+
+def test_services_import_nothing_of_what_they_serve():
+    """They serve a vehicle or the team, behind ``gcs.mavlink.services.aircraft``."""
+    for path in (ROOT / "gcs" / "mavlink" / "services").glob("*.py"):
+        assert {*mavlink_modules_imported(path)} <= {*PROTOCOL, "services", "settings"}
+        assert {name for name, _ in sub_packages_imported(path)} <= {
+            "gcs.mavlink",
+            "gcs.errors",
+            "gcs.mavlink.settings",
+        }
 
 
 @pytest.mark.parametrize("name", sorted(PROTOCOL))

@@ -13,8 +13,8 @@ from gcs.mavlink import px4
 from idc_controller.rotations import euler_from_quaternion, quaternion_from_euler
 from idc_controller.rotations_float import Quaternion
 from vehicle_sim.autopilot.autopilot import Autopilot
-from vehicle_sim.autopilot.parameter_table import vehicle_parameters
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
+from vehicle_sim.autopilot.vehicle_parameters import vehicle_parameters
 from vehicle_sim.world.sensors import Measurement, SensorNoise
 
 LEVEL = (1.0, 0.0, 0.0, 0.0)

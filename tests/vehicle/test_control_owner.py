@@ -6,7 +6,7 @@ import pymavlink.dialects.v20.common as mavlink
 import pytest
 
 from gcs.config.vehicle_settings import VehicleLinkSettings
-from vehicle_sim.autopilot.answer import ACCEPTED
+from gcs.mavlink.services.answer import ACCEPTED
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
 from vehicle_sim.mavlink.control_owner import ControlOwner
 

@@ -10,13 +10,15 @@ from gcs.config.vehicle_settings import StreamIntervals, VehicleLinkSettings
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.layout import packed
-from vehicle_sim.mavlink.peer import Peer, Stream, default_intervals
-from vehicle_sim.mavlink.peers import Peers
+from gcs.mavlink.services.peer import Peer, Stream
+from gcs.mavlink.services.peers import Peers
+from vehicle_sim.mavlink.streams import default_intervals
 
 OWN, UNIT = px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT
 HEARTBEAT, ATTITUDE = mavlink.MAVLINK_MSG_ID_HEARTBEAT, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION
 STATE = mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE
 SETTINGS = VehicleLinkSettings()
+IDENTITIES = (3, OWN), (px4.PAYLOAD_UNIT_SYSTEM, UNIT)
 BEAT = packed(mavlink.MAVLink_heartbeat_message(2, 12, 0, 0, 3, 3))
 
 
@@ -58,7 +60,7 @@ def test_messages_of_one_sample_are_sent_once_and_others_again_and_again():
 
 
 def peer(settings=SETTINGS, **options):
-    return Peer(("10.0.0.1", 5), 3, default_intervals(StreamIntervals(), 0.02), settings, **options)
+    return Peer(("10.0.0.1", 5), IDENTITIES, default_intervals(StreamIntervals(), 0.02), settings, **options)
 
 
 def sent(to, now, stamp=0):
@@ -78,7 +80,7 @@ def test_answers_go_out_before_what_is_due():
 
 
 def test_peer_gets_the_payload_units_streams_by_default_or_on_request():
-    without = peer(with_payload=False)
+    without = peer(silent=UNIT)
     assert {component for component, _ in sent(without, 0.0)} == {OWN}
     without.set_interval(ATTITUDE, 0.0, UNIT)
     assert [key for key in sent(without, 0.02, stamp=1) if key[0] == UNIT] == [(UNIT, ATTITUDE)]
@@ -161,7 +163,7 @@ class Builders:
 def peers(*clients):
     intervals = default_intervals(StreamIntervals(), 0.02)
     return Peers(
-        lambda address, with_payload: Peer(address, 3, intervals, LIMITED, with_payload),
+        lambda address, with_payload: Peer(address, IDENTITIES, intervals, LIMITED, None if with_payload else UNIT),
         dict.fromkeys(clients, True), LIMITED,
     )  # fmt: skip
 

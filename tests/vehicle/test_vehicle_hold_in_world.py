@@ -16,8 +16,8 @@ from idc_controller.model.nonlinear import SystemState
 from idc_controller.rotations import euler_from_quaternion
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.autopilot import Autopilot
-from vehicle_sim.autopilot.parameter_table import vehicle_parameters
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
+from vehicle_sim.autopilot.vehicle_parameters import vehicle_parameters
 from vehicle_sim.world.rotors import Rotors
 from vehicle_sim.world.sensors import Measurement, NavigationSensors, SensorNoise
 from vehicle_sim.world.world import World

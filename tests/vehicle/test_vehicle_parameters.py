@@ -14,7 +14,7 @@ from vehicle_bench import (
 
 from gcs.config.vehicle_settings import VehicleFailsafeSettings
 from gcs.mavlink import px4
-from vehicle_sim.autopilot.parameter_table import Parameter, ParameterRefusalError, ParameterTable
+from gcs.mavlink.services.parameters import Parameter, ParameterRefusalError, ParameterTable
 
 
 def value_of(messages: list[Any]) -> dict[str, Any]:

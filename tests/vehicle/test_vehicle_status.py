@@ -31,7 +31,7 @@ RANGE, PREARM = mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY, mavlink.MAV_SYS_STATUS_
 def fields(bench: Bench, kind: str, component: int = 1) -> dict[str, object]:
     """Fields of a message as a ground decodes it, built now; zeros are left out, as at the end of one."""
     number = getattr(mavlink, f"MAVLINK_MSG_ID_{kind}")
-    packed = bench.vehicle.telemetry.build(bench.now, component, number)
+    packed = bench.vehicle.telemetry.builders[component, number](bench.now)
     if not packed:
         return {}
     codec = bench.codecs.setdefault("status", type(bench.reader)(1, component))
@@ -186,7 +186,7 @@ def test_heartbeat_tells_mode_arming_and_failsafe() -> None:
 def test_points_of_a_scan_have_their_ranges_and_no_object(still: Bench) -> None:
     points = np.array([[1.0, 2.0, 3.0], [-4.0, 5.0, -6.0]])
     still.vehicle.take_scan(RangeSample(0.75, 12.0, points, range_min=0.25))
-    run = still.vehicle.telemetry.build(1.0, 1, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D)
+    run = still.vehicle.telemetry.builders[1, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D](1.0)
     sent = [r.message for frame in type(still.reader)(1, 1).frames(run) for r in still.reader.decode(frame)]
     assert [(m.x, m.y, m.z, m.obstacle_id) for m in sent] == [(1.0, 2.0, 3.0, 65535), (-4.0, 5.0, -6.0, 65535)]
     for message in sent:

@@ -10,18 +10,18 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.config.vehicle_settings import AutopilotSettings
 from gcs.mavlink import px4
+from gcs.mavlink.services.answer import ACCEPTED, Answer, denied, rejected_for_now
+from gcs.mavlink.services.parameters import ParameterTable
 from idc_controller.rotations_float import attitude_of_force, euler_of
 from vehicle_sim.autopilot import modes
 from vehicle_sim.autopilot.actuation import NO_RATES, Actuation
 from vehicle_sim.autopilot.airframe import Airframe
-from vehicle_sim.autopilot.answer import ACCEPTED, Answer, denied, rejected_for_now
 from vehicle_sim.autopilot.arming import arming_problem
 from vehicle_sim.autopilot.failsafe import check_failsafes
 from vehicle_sim.autopilot.flight_state import TIME_TOLERANCE, FlightState
 from vehicle_sim.autopilot.land_detector import LandDetector
 from vehicle_sim.autopilot.navigation import Navigation
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
-from vehicle_sim.autopilot.parameter_table import ParameterTable
 from vehicle_sim.autopilot.setpoint_stream import SetpointStream
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint, StopPlan
 from vehicle_sim.world.sensors import Measurement

@@ -5,13 +5,13 @@ from dataclasses import dataclass, field, replace
 
 from gcs.config.vehicle_settings import AutopilotSettings
 from gcs.mavlink import px4
+from gcs.mavlink.services.parameters import ParameterTable
 from idc_controller.rotations_float import euler_of
 from vehicle_sim.autopilot.actuation import Actuation
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.hold_control import HoldController, HoldPlan
 from vehicle_sim.autopilot.land_detector import LandDetector
 from vehicle_sim.autopilot.navigation import Navigation
-from vehicle_sim.autopilot.parameter_table import ParameterTable
 from vehicle_sim.autopilot.setpoint_stream import SetpointStream
 from vehicle_sim.autopilot.setpoints import StopPlan
 from vehicle_sim.world.sensors import Measurement

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from gcs.mavlink import px4
-from vehicle_sim.autopilot.answer import ACCEPTED, Answer, denied, rejected_for_now
+from gcs.mavlink.services.answer import ACCEPTED, Answer, denied, rejected_for_now
 from vehicle_sim.autopilot.flight_state import FlightState
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
 
@@ -63,9 +63,13 @@ def _manual(state: FlightState, custom_mode: int, now: float) -> Answer:
     return ACCEPTED
 
 
-def _team_only(state: FlightState, custom_mode: int, now: float) -> Answer:
-    name = px4.mode_name(custom_mode)
-    return denied(f"{name} denied: one vehicle alone would tip the payload; fly together in OFFBOARD")
+def team_only(what: str) -> Answer:
+    """Return the refusal of what one vehicle cannot do while it carries a payload with others."""
+    return denied(f"{what} denied: one vehicle alone would tip the payload; fly together in OFFBOARD")
+
+
+def _of_team_only(state: FlightState, custom_mode: int, now: float) -> Answer:
+    return team_only(px4.mode_name(custom_mode))
 
 
 _ENTRY: dict[int, Callable[[FlightState, int, float], Answer]] = {
@@ -74,7 +78,7 @@ _ENTRY: dict[int, Callable[[FlightState, int, float], Answer]] = {
     px4.MODE_MANUAL: _manual,
     px4.MODE_ALTCTL: _manual,
     px4.MODE_POSCTL: _manual,
-    px4.MODE_TAKEOFF: _team_only,
-    px4.MODE_MISSION: _team_only,
-    px4.MODE_RETURN: _team_only,
+    px4.MODE_TAKEOFF: _of_team_only,
+    px4.MODE_MISSION: _of_team_only,
+    px4.MODE_RETURN: _of_team_only,
 }

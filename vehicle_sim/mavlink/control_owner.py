@@ -1,13 +1,10 @@
 """Control of a vehicle: the ground whose set-points fly it commands it, and while they come no other."""
 
 from gcs.config.vehicle_settings import VehicleLinkSettings
-from gcs.mavlink.address import Address
-from vehicle_sim.autopilot.answer import Answer, rejected_for_now
+from gcs.mavlink.services.aircraft import Sender
+from gcs.mavlink.services.answer import Answer, rejected_for_now
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
-
-#: An address and the MAVLink system that speaks from it.
-Sender = tuple[Address, int]
 
 
 class _Stream:

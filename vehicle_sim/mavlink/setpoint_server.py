@@ -5,10 +5,10 @@ from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.mavlink.services.dispatcher import Dispatcher, Request
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.setpoints import SetpointError, StopPlan, read_setpoint, read_stop_plan
 from vehicle_sim.mavlink.control_owner import ControlOwner
-from vehicle_sim.mavlink.dispatcher import Dispatcher, Request
 
 STAMP_WRAP = 2**32 * 1e-3  # s after which stamps of 32 bits begin anew
 

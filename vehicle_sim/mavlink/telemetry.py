@@ -8,6 +8,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
 from gcs.mavlink.layout import LAYOUTS, Packed, PackedRun, packed
+from gcs.mavlink.services.aircraft import Built, MessageKey
 from gcs.mission.model import Home
 from idc_controller.rotations_float import euler_of, into_body
 from vehicle_sim.autopilot.actuation import LEVEL
@@ -37,9 +38,6 @@ _CAPABILITIES: int = (
 _VERSION = 0x00010000  # 0.1.0, a development version
 _CELLS = [4000, 4000, 4000, 4000, 65535, 65535, 65535, 65535, 65535, 65535]
 _NAN = math.nan
-
-Built = tuple[Packed, ...] | PackedRun
-"""Messages of one kind: one, several, or none."""
 
 # What is sent often is packed without a message object, its fields in the order of the wire.
 _ATTITUDE = LAYOUTS[mavlink.MAVLINK_MSG_ID_ATTITUDE]
@@ -81,7 +79,7 @@ class Telemetry:
         self._scan_messages: tuple[RangeSample | None, Built, Built] = (None, (), ())
         """The scan that was built last, its returns, and its end."""
         #: By component and message id.
-        self.builders: dict[tuple[int, int], Callable[[float], Built]] = {
+        self.builders: dict[MessageKey, Callable[[float], Built]] = {
             (_OWN, mavlink.MAVLINK_MSG_ID_HEARTBEAT): self._heartbeat,
             (_OWN, mavlink.MAVLINK_MSG_ID_SYS_STATUS): self._sys_status,
             (_OWN, mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE): self._extended_sys_state,
@@ -105,14 +103,6 @@ class Telemetry:
             (unit, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION): lambda now: self._attitude_of(self.payload),
             (unit, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED): lambda now: self._position_of(self.payload),
         }
-
-    def knows(self, component: int, message_id: int) -> bool:
-        """Return True if a component of this vehicle has such a message."""
-        return (component, message_id) in self.builders
-
-    def build(self, now: float, component: int, message_id: int) -> Built:
-        """Return the messages of a kind that :meth:`knows`: none while there is no data, several for a scan."""
-        return self.builders[component, message_id](now)
 
     def time_boot_ms(self, time: float) -> int:
         """Return the stamp of a time (s)."""
@@ -339,19 +329,3 @@ class Telemetry:
         if measured is None:
             return ()
         return (_LOCAL_POSITION_NED.pack(self.time_boot_ms(measured.time), *measured.position, *measured.velocity),)
-
-
-class TelemetrySample:
-    """The messages of one vehicle at ``now`` (s), each built when it is first due, once for all peers."""
-
-    def __init__(self, telemetry: Telemetry, now: float) -> None:
-        self._builders = telemetry.builders
-        self._now = now
-        self._built: dict[tuple[int, int], Built] = {}
-
-    def messages(self, key: tuple[int, int]) -> Built:
-        """Return the messages of a component and message id."""
-        built = self._built.get(key)
-        if built is None:
-            built = self._built[key] = self._builders[key](self._now)
-        return built

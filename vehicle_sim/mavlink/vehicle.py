@@ -11,21 +11,23 @@ from gcs.mavlink import px4
 from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.messages import BROADCAST
+from gcs.mavlink.services.commands import CommandServer
+from gcs.mavlink.services.dispatcher import Dispatcher, Request
+from gcs.mavlink.services.link import LinkServices
+from gcs.mavlink.services.other_components import OtherComponents
+from gcs.mavlink.services.parameters import ParameterServer
+from gcs.mavlink.services.peer import Peer
+from gcs.mavlink.services.peers import Peers
+from gcs.mavlink.services.streams import StreamRequests
 from gcs.mission.model import DEFAULT_HOME, Home
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
-from vehicle_sim.autopilot.parameter_table import vehicle_parameters
-from vehicle_sim.mavlink.commands import CommandServer
+from vehicle_sim.autopilot.vehicle_parameters import vehicle_parameters
+from vehicle_sim.mavlink.aircraft import CoupledAircraft
 from vehicle_sim.mavlink.control_owner import ControlOwner
-from vehicle_sim.mavlink.dispatcher import Dispatcher, Request
-from vehicle_sim.mavlink.link_services import LinkServices
-from vehicle_sim.mavlink.other_components import OtherComponents
-from vehicle_sim.mavlink.parameter_server import ParameterServer
-from vehicle_sim.mavlink.peer import Peer, default_intervals
-from vehicle_sim.mavlink.peers import Peers
 from vehicle_sim.mavlink.setpoint_server import SetpointServer
-from vehicle_sim.mavlink.stream_requests import StreamRequests
+from vehicle_sim.mavlink.streams import default_intervals
 from vehicle_sim.mavlink.telemetry import Telemetry
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
@@ -67,14 +69,19 @@ class Vehicle:
         self.autopilot = Autopilot(airframe, self.parameters, autopilot, arrays)
         self.telemetry = Telemetry(system_id, self.autopilot, home, boot_time, clock)
         self._decoder = Codec(system_id, px4.AUTOPILOT_COMPONENT)
-        self._peers = Peers(
-            lambda address, with_payload: Peer(address, system_id, intervals, link, with_payload), clients, link
-        )
-        self._own = (
+        own, payload_unit = (
             (system_id, px4.AUTOPILOT_COMPONENT),
             (px4.PAYLOAD_UNIT_SYSTEM, px4.PAYLOAD_UNIT_COMPONENT),
         )
+        self._own = own, payload_unit
         """System and component of all that it sends."""
+        self._peers = Peers(
+            lambda address, with_payload: Peer(
+                address, self._own, intervals, link, silent=None if with_payload else px4.PAYLOAD_UNIT_COMPONENT
+            ),
+            clients,
+            link,
+        )
         self._sent_changes = 0
         self._latest = -math.inf
         owner = ControlOwner(self.autopilot, link)
@@ -87,8 +94,9 @@ class Vehicle:
             StreamRequests(component, self.telemetry, owner, link)
             for component in (px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT)
         )
-        CommandServer(self.autopilot, owner, self.telemetry, streams).register(self._dispatcher)
-        self._other_components = OtherComponents(system_id, of_payload_unit)
+        aircraft = CoupledAircraft(self.autopilot, owner)
+        CommandServer(aircraft, owner, self.telemetry, streams).register(self._dispatcher)
+        self._other_components = OtherComponents(own, payload_unit, of_payload_unit)
         ParameterServer(self.parameters, owner).register(self._dispatcher)
 
     @property

@@ -1,22 +1,22 @@
-"""One peer of a vehicle, and its streams."""
+"""One peer of an aircraft, and its streams."""
 
 import math
-from dataclasses import fields
+from collections.abc import Mapping, Sequence
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
-from gcs.config.vehicle_settings import StreamIntervals, VehicleLinkSettings
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec, gather
 from gcs.mavlink.layout import Packed, PackedRun, packed
 from gcs.mavlink.messages import Message
-from vehicle_sim.mavlink.telemetry import Built, TelemetrySample
+from gcs.mavlink.services.aircraft import Built, MessageKey, Sample
+from gcs.mavlink.settings import PeerSettings
 
 TIME_TOLERANCE = 1e-6  # s: sums of steps are not exact
 
 _TEXT_LIMIT = 50
-_AUTOPILOT, _PAYLOAD = px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT
+_AUTOPILOT = px4.AUTOPILOT_COMPONENT
 
 #: Messages of one sample, which begin with its stamp: never sent twice for the same one.
 _OF_ONE_SAMPLE = (
@@ -26,31 +26,6 @@ _OF_ONE_SAMPLE = (
     mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE,
 )
 _STAMP_LENGTH = 4
-
-
-def default_intervals(intervals: StreamIntervals, telemetry_interval: float) -> dict[tuple[int, int], float]:
-    """Return the intervals (s) of all streams by component and message, in the order in which they are sent.
-
-    ``telemetry_interval`` of position and attitude, the vehicle's and the payload's. With every sample goes the
-    set-point that was being flown, because set-points may be lost. A scan is sent as soon as there is one, behind the
-    attitude and position at which it was made: its returns, then the message that ends it.
-    """
-    return {
-        # The settings have the names of the messages.
-        **{
-            (_AUTOPILOT, getattr(mavlink, f"MAVLINK_MSG_ID_{setting.name.upper()}")): getattr(intervals, setting.name)
-            for setting in fields(intervals)
-        },
-        (_PAYLOAD, mavlink.MAVLINK_MSG_ID_HEARTBEAT): intervals.heartbeat,
-        (_PAYLOAD, mavlink.MAVLINK_MSG_ID_VIBRATION): intervals.vibration,
-        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION): telemetry_interval,
-        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED): telemetry_interval,
-        (_PAYLOAD, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION): telemetry_interval,
-        (_PAYLOAD, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED): telemetry_interval,
-        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET): telemetry_interval,
-        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D): telemetry_interval,
-        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE): telemetry_interval,
-    }
 
 
 class Stream:
@@ -67,7 +42,7 @@ class Stream:
         self._of_one_sample = message_id in _OF_ONE_SAMPLE
         self._last_stamp = b""
 
-    def take(self, sample: TelemetrySample, now: float, repeat_interval: float) -> Built:
+    def take(self, sample: Sample, now: float, repeat_interval: float) -> Built:
         """Return the messages of ``sample`` that are due, none where those of its stamp were sent already.
 
         They are due next at the next multiple of the interval; sooner while repetitions are due (interval in s).
@@ -92,34 +67,26 @@ class Peer:
     def __init__(
         self,
         address: Address,
-        system_id: int,
-        intervals: dict[tuple[int, int], float],
-        settings: VehicleLinkSettings,
-        with_payload: bool = True,
+        identities: Sequence[tuple[int, int]],
+        intervals: Mapping[MessageKey, float],
+        settings: PeerSettings,
+        silent: int | None = None,
     ) -> None:
-        """``intervals`` as :func:`default_intervals` gives them; all streams start at once.
+        """``identities``: system and component of each who sends; ``intervals`` (s) of the streams in their order.
 
-        Without ``with_payload`` those of the payload unit start only on request: another vehicle sends them there.
+        All streams start at once, those of the ``silent`` component only on request: another sends them there.
         """
         self.address = address
         self.heard_at = -math.inf
         self.next_due = -math.inf
         self._settings = settings
-        self._codecs = {
-            _AUTOPILOT: Codec(system_id, _AUTOPILOT),
-            _PAYLOAD: Codec(px4.PAYLOAD_UNIT_SYSTEM, _PAYLOAD),
-        }
+        self._codecs = {component: Codec(system, component) for system, component in identities}
         self._replies: list[bytes] = []
         self._defaults = intervals
-        self._streams = [
-            Stream(*key, interval) for key, interval in intervals.items() if with_payload or key[0] != _PAYLOAD
-        ]
+        self._streams = [Stream(*key, interval) for key, interval in intervals.items() if key[0] != silent]
 
     def set_interval(self, message_id: int, interval: float, component: int = _AUTOPILOT) -> None:
-        """Set the interval (s) of a message on this link; 0 restores the default, infinity stops it.
-
-        ``component`` of the vehicle's autopilot or of the payload unit.
-        """
+        """Set the interval (s) of a message on this link; 0 restores the default, infinity stops it."""
         key = component, message_id
         if interval == 0.0:
             interval = self._defaults.get(key, math.inf)
@@ -136,7 +103,7 @@ class Peer:
         self.next_due = -math.inf
 
     def reply(self, *messages: Message, component: int = _AUTOPILOT) -> None:
-        """Send messages of the autopilot or of the payload unit with the next datagrams."""
+        """Send messages of a component with the next datagrams."""
         self.reply_packed(*packed(*messages), component=component)
 
     def reply_packed(self, *messages: Packed, component: int = _AUTOPILOT) -> None:
@@ -152,7 +119,7 @@ class Peer:
             piece = data[start : start + _TEXT_LIMIT]
             self.reply(mavlink.MAVLink_statustext_message(mavlink.MAV_SEVERITY_WARNING, piece))
 
-    def datagrams(self, sample: TelemetrySample, now: float) -> list[bytes]:
+    def datagrams(self, sample: Sample, now: float) -> list[bytes]:
         """Return replies and what is due of ``sample``, in as few datagrams as possible."""
         latest = now + TIME_TOLERANCE
         if latest < self.next_due:

@@ -1,4 +1,4 @@
-"""The services of a vehicle by the messages that they handle."""
+"""The services of an aircraft by the messages that they handle."""
 
 from collections.abc import Callable
 from operator import attrgetter
@@ -7,8 +7,8 @@ from typing import Any, NamedTuple, TypeVar
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.messages import Message, Received
-from vehicle_sim.mavlink.control_owner import Sender
-from vehicle_sim.mavlink.peer import Peer
+from gcs.mavlink.services.aircraft import Sender
+from gcs.mavlink.services.peer import Peer
 
 M = TypeVar("M", bound=Message)
 
@@ -30,7 +30,7 @@ class Request(NamedTuple):
 
 
 class Dispatcher:
-    """The services of a vehicle by the class of the messages they handle."""
+    """The services of an aircraft by the class of the messages they handle."""
 
     def __init__(self) -> None:
         self._handlers: dict[type[Message], tuple[Callable[..., None], Callable[[Received], Any]]] = {}

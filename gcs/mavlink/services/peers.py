@@ -1,16 +1,16 @@
-"""The peers of a vehicle: added when they send valid MAVLink, removed after a timeout; clients' ports stay."""
+"""The peers of an aircraft: added when they send valid MAVLink, removed after a timeout; clients' ports stay."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping
 
-from gcs.config.vehicle_settings import VehicleLinkSettings
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address
-from vehicle_sim.mavlink.peer import TIME_TOLERANCE, Peer
-from vehicle_sim.mavlink.telemetry import Telemetry, TelemetrySample
+from gcs.mavlink.services.aircraft import MessageSource, Sample
+from gcs.mavlink.services.peer import TIME_TOLERANCE, Peer
+from gcs.mavlink.settings import PeerSettings
 
 NewPeer = Callable[[Address, bool], Peer]
-"""Makes the peer of an address, with the payload unit's streams or without."""
+"""Makes the peer of an address, with all streams or with those of the aircraft alone."""
 
 
 class Peers:
@@ -19,8 +19,8 @@ class Peers:
     A client's port gets the streams from the start and for ever, whether anybody answers there or not.
     """
 
-    def __init__(self, new_peer: NewPeer, clients: Mapping[Address, bool], settings: VehicleLinkSettings) -> None:
-        """``clients``: the ports of clients, and whether the payload unit's messages go there, too."""
+    def __init__(self, new_peer: NewPeer, clients: Mapping[Address, bool], settings: PeerSettings) -> None:
+        """``clients``: the ports of clients, and whether all streams go there."""
         self._new_peer = new_peer
         self._settings = settings
         self._clients = frozenset(clients)
@@ -43,13 +43,13 @@ class Peers:
         self.listeners.discard(address)
         return peer
 
-    def datagrams_to_send(self, telemetry: Telemetry, now: float) -> list[tuple[bytes, Address]]:
+    def datagrams_to_send(self, source: MessageSource, now: float) -> list[tuple[bytes, Address]]:
         """Return all that is due at ``now`` (s), each with its address."""
         out: list[tuple[bytes, Address]] = []
         latest = now + TIME_TOLERANCE
         if self.next_due > latest:
             return out
-        sample = TelemetrySample(telemetry, now)
+        sample = Sample(source, now)
         for peer in [peer for peer in self._peers.values() if peer.next_due <= latest]:
             if self._is_gone(peer, now):
                 del self._peers[peer.address]

@@ -1,4 +1,4 @@
-"""TIMESYNC and PING: answers by which others measure a vehicle's clock and the link to it."""
+"""TIMESYNC and PING: answers by which others measure an aircraft's clock and the link to it."""
 
 from collections.abc import Callable
 from typing import Any
@@ -6,7 +6,7 @@ from typing import Any
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.layout import LAYOUTS
-from vehicle_sim.mavlink.dispatcher import Dispatcher, Request
+from gcs.mavlink.services.dispatcher import Dispatcher, Request
 
 _TIMESYNC = LAYOUTS[mavlink.MAVLINK_MSG_ID_TIMESYNC]
 
@@ -15,7 +15,7 @@ class LinkServices:
     """Answers requests of both protocols; answers of others are ignored."""
 
     def __init__(self, clock: Callable[[float], float]) -> None:
-        """``clock`` is what the vehicle's clock shows at a time."""
+        """``clock`` is what the aircraft's clock shows at a time."""
         self._clock = clock
 
     def register(self, dispatcher: Dispatcher) -> None:

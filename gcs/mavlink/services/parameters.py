@@ -1,24 +1,21 @@
-"""A vehicle's parameters, as the MAVLink parameter protocol shows them."""
+"""The MAVLink parameter protocol, in PX4's byte-wise flavour, and the parameters that it serves."""
 
 import math
 import struct
 from dataclasses import dataclass
-from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
-from gcs.config.flight_settings import FailsafeSettings
-from gcs.config.vehicle_settings import AutopilotSettings, HoldSettings, VehicleFailsafeSettings
+from gcs.errors import GcsError
 from gcs.mavlink import px4
-from idc_controller.settings import METADATA_KEY, Setting
-from vehicle_sim.autopilot.airframe import Airframe
-from vehicle_sim.world.errors import SimulationError
+from gcs.mavlink.services.aircraft import Control
+from gcs.mavlink.services.dispatcher import Dispatcher, Request
 
 REAL: int = mavlink.MAV_PARAM_TYPE_REAL32
 INTEGER: int = mavlink.MAV_PARAM_TYPE_INT32
 
 
-class ParameterRefusalError(SimulationError):
+class ParameterRefusalError(GcsError):
     """A parameter that does not exist or may not take the value; ``str`` says why."""
 
 
@@ -44,7 +41,7 @@ class ParameterTable:
         self._by_name = {parameter.name: parameter for parameter in self._parameters}
         self._index = {parameter.name: i for i, parameter in enumerate(self._parameters)}
         if len(self._index) != len(self._parameters) or any(len(name) > 16 for name in self._index):
-            raise SimulationError("parameter names must be unique and at most 16 characters long")
+            raise ValueError("parameter names must be unique and at most 16 characters long")
 
     def __len__(self) -> int:
         return len(self._parameters)
@@ -80,44 +77,53 @@ class ParameterTable:
         parameter.value = value
 
 
-def vehicle_parameters(
-    airframe: Airframe, system_id: int, onboard_rate: int, settings: AutopilotSettings = AutopilotSettings()
-) -> ParameterTable:
-    """The parameters of one vehicle with their defaults; ``onboard_rate`` of the attitude loop in Hz."""
-    failsafe = settings.failsafe
-    return ParameterTable(
-        [
-            Parameter(px4.PARAM_THRUST_MAX, airframe.rotors.thrust_max),
-            Parameter(px4.PARAM_MASS, airframe.mass),
-            Parameter(px4.PARAM_ATTITUDE_KP, airframe.attitude_kp),
-            Parameter(px4.PARAM_ATTITUDE_KD, airframe.attitude_kd),
-            Parameter(px4.PARAM_MOTOR_LAG, airframe.motor_time_constant),
-            Parameter(px4.PARAM_ONBOARD_RATE, onboard_rate, INTEGER),
-            Parameter(px4.PARAM_SYSTEM_ID, system_id, INTEGER),
-            Parameter("MAV_TYPE", mavlink.MAV_TYPE_QUADROTOR, INTEGER),
-            Parameter("SYS_AUTOSTART", 4001, INTEGER),
-            Parameter("SYS_AUTOCONFIG", 0, INTEGER),
-            Parameter("CAL_GYRO0_ID", 1, INTEGER),
-            Parameter("CAL_ACC0_ID", 1, INTEGER),
-            Parameter("CAL_MAG0_ID", 1, INTEGER),
-            _settable(px4.PARAM_SETPOINT_LOSS, failsafe.setpoint_loss, FailsafeSettings, "telemetry_timeout"),
-            _settable(px4.PARAM_LAND_DELAY, failsafe.land_delay, VehicleFailsafeSettings, "land_delay"),
-            _settable(px4.PARAM_LINK_LOSS, failsafe.link_loss, VehicleFailsafeSettings, "link_loss", INTEGER),
-            _settable(px4.PARAM_LAND_SPEED, settings.hold.land_speed, HoldSettings, "land_speed"),
-            _settable(px4.PARAM_TAKEOFF_ALTITUDE, settings.takeoff_altitude, AutopilotSettings, "takeoff_altitude"),
-        ]
-    )
+class ParameterServer:
+    """PARAM_REQUEST_READ, PARAM_REQUEST_LIST and PARAM_SET. A refused PARAM_SET is answered with the value kept."""
 
+    def __init__(self, table: ParameterTable, control: Control) -> None:
+        self._table = table
+        self._control = control
 
-def _settable(name: str, value: float, settings: type[Any], key: str, kind: int = REAL) -> Parameter:
-    """Return a parameter that the ground may set within the bounds that the setting ``key`` is declared with."""
-    declared: Setting = settings.__dataclass_fields__[key].metadata[METADATA_KEY]
-    assert declared.ge is not None and declared.le is not None
-    return Parameter(name, value, kind, (declared.ge, declared.le))
+    def register(self, dispatcher: Dispatcher) -> None:
+        """Take the messages of this service."""
+        dispatcher.register(mavlink.MAVLink_param_request_read_message, self._on_read)
+        dispatcher.register(mavlink.MAVLink_param_request_list_message, self._on_list)
+        dispatcher.register(mavlink.MAVLink_param_set_message, self._on_set)
+
+    def _on_read(self, message: mavlink.MAVLink_param_request_read_message, request: Request) -> None:
+        if message.param_index >= 0:
+            self._send(self._table.by_index(message.param_index), request)
+        else:
+            self._send(self._table.by_name(message.param_id), request)
+
+    def _on_list(self, message: mavlink.MAVLink_param_request_list_message, request: Request) -> None:
+        for index in range(len(self._table)):
+            self._send(self._table.by_index(index), request)
+
+    def _on_set(self, message: mavlink.MAVLink_param_set_message, request: Request) -> None:
+        name = message.param_id
+        if self._control.is_stranger(request.sender, request.now):
+            request.peer.send_statustext(f"{name} denied: another ground is in control")
+        else:
+            try:
+                self._table.set_from_wire(name, message.param_value, message.param_type)
+            except ParameterRefusalError as error:
+                request.peer.send_statustext(str(error))
+        self._send(self._table.by_name(name), request)
+
+    def _send(self, parameter: Parameter | None, request: Request) -> None:
+        """Send the value of a parameter; nothing of one that does not exist."""
+        if parameter is None:
+            return
+        value = px4.parameter_to_wire(parameter.value, parameter.type)
+        count, index = len(self._table), self._table.index_of(parameter.name)
+        request.peer.reply(
+            mavlink.MAVLink_param_value_message(parameter.name.encode(), value, parameter.type, count, index)
+        )
 
 
 def _float32(value: float) -> float:
     number: float = struct.unpack("<f", struct.pack("<f", value))[0]
     if not math.isfinite(number):
-        raise SimulationError(f"{value} cannot be a parameter")
+        raise ValueError(f"{value} cannot be a parameter")
     return number

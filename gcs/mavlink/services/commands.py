@@ -1,4 +1,4 @@
-"""MAVLink commands to a vehicle: the ground that may send them, their execution, and the answer."""
+"""MAVLink commands to an aircraft: the ground that may send them, their execution, and the answer."""
 
 import math
 from collections.abc import Callable
@@ -6,13 +6,11 @@ from collections.abc import Callable
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
-from vehicle_sim.autopilot.answer import ACCEPTED, UNSUPPORTED, Answer, denied
-from vehicle_sim.autopilot.autopilot import Autopilot
-from vehicle_sim.mavlink.control_owner import ControlOwner, Sender
-from vehicle_sim.mavlink.dispatcher import Command, Dispatcher, Request
-from vehicle_sim.mavlink.peer import Peer
-from vehicle_sim.mavlink.stream_requests import StreamRequests, whole
-from vehicle_sim.mavlink.telemetry import Telemetry
+from gcs.mavlink.services.aircraft import Aircraft, Control, MessageSource
+from gcs.mavlink.services.answer import ACCEPTED, UNSUPPORTED, Answer, denied
+from gcs.mavlink.services.dispatcher import Command, Dispatcher, Request
+from gcs.mavlink.services.peer import Peer
+from gcs.mavlink.services.streams import StreamRequests, whole
 
 #: Requests of information, or about the sender's own link: every ground may send them.
 _HARMLESS = (
@@ -25,12 +23,10 @@ _HARMLESS = (
 class CommandServer:
     """COMMAND_LONG, COMMAND_INT and SET_MODE."""
 
-    def __init__(
-        self, autopilot: Autopilot, owner: ControlOwner, telemetry: Telemetry, streams: StreamRequests
-    ) -> None:
-        self._autopilot = autopilot
-        self._owner = owner
-        self._telemetry = telemetry
+    def __init__(self, aircraft: Aircraft, control: Control, source: MessageSource, streams: StreamRequests) -> None:
+        self._aircraft = aircraft
+        self._control = control
+        self._builders = source.builders
         self._commands: dict[int, Callable[[Command, Request], Answer]] = {
             mavlink.MAV_CMD_COMPONENT_ARM_DISARM: self._arm_disarm,
             mavlink.MAV_CMD_DO_SET_MODE: self._do_set_mode,
@@ -50,7 +46,7 @@ class CommandServer:
 
     def _on_command(self, message: Command, request: Request) -> None:
         run = self._commands.get(message.command)
-        if message.command not in _HARMLESS and self._owner.is_stranger(request.sender, request.now):
+        if message.command not in _HARMLESS and self._control.is_stranger(request.sender, request.now):
             answer = denied("Command denied: another ground station is in control")
         elif run is None:
             answer = UNSUPPORTED
@@ -62,25 +58,20 @@ class CommandServer:
         )
 
     def _on_set_mode(self, message: mavlink.MAVLink_set_mode_message, request: Request) -> None:
-        if self._owner.is_stranger(request.sender, request.now):
+        if self._control.is_stranger(request.sender, request.now):
             answer = denied("Mode denied: another ground station is in control")
         elif not message.base_mode & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:
             answer = denied("Mode denied: only custom modes are known")
         else:
-            answer = self._enter_mode(message.custom_mode, request.sender, request.now)
+            answer = self._aircraft.enter_mode(message.custom_mode, request.sender, request.now)
         _explain(answer, request.peer)
-
-    def _enter_mode(self, custom_mode: int, sender: Sender, now: float) -> Answer:
-        if custom_mode == px4.MODE_OFFBOARD:
-            return self._owner.enter_offboard(sender, now)
-        return self._autopilot.enter_mode(custom_mode, now)
 
     def _arm_disarm(self, message: Command, request: Request) -> Answer:
         force = message.param2 == px4.FORCE_ARM_DISARM
         if message.param1 == 1.0:
-            return self._autopilot.arm(request.now, force)
+            return self._aircraft.arm(request.now, force)
         if message.param1 == 0.0:
-            return self._autopilot.disarm(force)
+            return self._aircraft.disarm(request.now, force)
         return denied(f"Arming denied: param1 {message.param1} is neither 0 nor 1")
 
     def _do_set_mode(self, message: Command, request: Request) -> Answer:
@@ -92,15 +83,15 @@ class CommandServer:
             return denied("Mode denied: only custom modes are known")
         if main != px4.MainMode.AUTO:
             sub = 0
-        return self._enter_mode(px4.encode_custom_mode(main, sub), request.sender, request.now)
+        return self._aircraft.enter_mode(px4.encode_custom_mode(main, sub), request.sender, request.now)
 
     def _entering(self, mode: int) -> Callable[[Command, Request], Answer]:
         """Return what carries out a command that enters a mode."""
-        return lambda message, request: self._autopilot.enter_mode(mode, request.now)
+        return lambda message, request: self._aircraft.enter_mode(mode, request.sender, request.now)
 
     def _request_capabilities(self, message: Command, request: Request) -> Answer:
         version = mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION
-        request.peer.reply_packed(*self._telemetry.build(request.now, px4.AUTOPILOT_COMPONENT, version))
+        request.peer.reply_packed(*self._builders[px4.AUTOPILOT_COMPONENT, version](request.now))
         return ACCEPTED
 
 

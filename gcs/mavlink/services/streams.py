@@ -1,25 +1,22 @@
-"""Requests of one message or of its stream, to the vehicle's autopilot or to the payload unit."""
+"""Requests of one message or of its stream."""
 
 import math
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
-from gcs.config.vehicle_settings import VehicleLinkSettings
-from vehicle_sim.autopilot.answer import ACCEPTED, UNSUPPORTED, Answer, denied
-from vehicle_sim.mavlink.control_owner import ControlOwner
-from vehicle_sim.mavlink.dispatcher import Command, Request
-from vehicle_sim.mavlink.telemetry import Telemetry
+from gcs.mavlink.services.aircraft import Control, MessageSource
+from gcs.mavlink.services.answer import ACCEPTED, UNSUPPORTED, Answer, denied
+from gcs.mavlink.services.dispatcher import Command, Request
+from gcs.mavlink.settings import PeerSettings
 
 
 class StreamRequests:
     """MAV_CMD_REQUEST_MESSAGE and MAV_CMD_SET_MESSAGE_INTERVAL for the messages of one component."""
 
-    def __init__(
-        self, component: int, telemetry: Telemetry, owner: ControlOwner, settings: VehicleLinkSettings
-    ) -> None:
+    def __init__(self, component: int, source: MessageSource, control: Control, settings: PeerSettings) -> None:
         self._component = component
-        self._telemetry = telemetry
-        self._owner = owner
+        self._builders = source.builders
+        self._control = control
         self._interval_min = settings.interval_min
 
     def request_message(self, message: Command, request: Request) -> Answer:
@@ -27,7 +24,7 @@ class StreamRequests:
         wanted = self._wanted(message)
         if wanted is None:
             return UNSUPPORTED
-        built = self._telemetry.build(request.now, self._component, wanted)
+        built = self._builders[self._component, wanted](request.now)
         if not built:
             return Answer(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
         request.peer.reply_packed(*built, component=self._component)
@@ -38,7 +35,7 @@ class StreamRequests:
         wanted = self._wanted(message)
         if wanted is None:
             return UNSUPPORTED
-        if self._owner.is_stranger_at_its_address(request.sender, request.now):
+        if self._control.is_stranger_at_its_address(request.sender, request.now):
             return denied("Interval denied: another ground station flies by this link")
         microseconds = message.param2
         if microseconds == -1.0:
@@ -55,7 +52,7 @@ class StreamRequests:
     def _wanted(self, message: Command) -> int | None:
         """Return the message id that a command names; None: there is no such message."""
         wanted = whole(message.param1, 1 << 24)
-        return wanted if wanted is not None and self._telemetry.knows(self._component, wanted) else None
+        return wanted if (self._component, wanted) in self._builders else None
 
 
 def whole(value: float, limit: int = 256) -> int | None:

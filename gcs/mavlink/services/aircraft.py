@@ -1,0 +1,95 @@
+"""What the services serve: one aircraft, be it a vehicle or the team, with its commands and its messages."""
+
+from collections.abc import Callable, Mapping
+from typing import NamedTuple, Protocol
+
+from gcs.mavlink.address import Address
+from gcs.mavlink.layout import Packed, PackedRun
+from gcs.mavlink.services.answer import Answer
+
+Sender = tuple[Address, int]
+"""An address and the MAVLink system that speaks from it."""
+
+Built = tuple[Packed, ...] | PackedRun
+"""Messages of one kind: one, several, or none."""
+
+MessageKey = tuple[int, int]
+"""Component and message id."""
+
+
+class Reposition(NamedTuple):
+    """Where MAV_CMD_DO_REPOSITION sends an aircraft; NaN: as it is now.
+
+    Latitude and longitude in deg, ``altitude`` in m above mean sea level, ``yaw`` in rad, ``speed`` in m/s.
+    """
+
+    latitude: float
+    longitude: float
+    altitude: float
+    yaw: float
+    speed: float
+
+
+class Aircraft(Protocol):
+    """What an aircraft does when it is commanded; every refusal says why. Times in s."""
+
+    def arm(self, now: float, force: bool = False) -> Answer:
+        """Arm; ``force`` skips what checks may be skipped."""
+
+    def disarm(self, now: float, force: bool = False) -> Answer:
+        """Disarm, in the air only with ``force``."""
+
+    def enter_mode(self, custom_mode: int, sender: Sender, now: float) -> Answer:
+        """Enter one of PX4's custom modes for ``sender``."""
+
+    def take_off(self, altitude: float, now: float) -> Answer:
+        """Take off to ``altitude`` (m above mean sea level; NaN: the parameter's height)."""
+
+    def reposition(self, goal: Reposition, now: float) -> Answer:
+        """Fly to a place and hold there."""
+
+    def change_speed(self, speed: float, now: float) -> Answer:
+        """Fly with another speed (m/s) from now on."""
+
+    def start_mission(self, first: int, now: float) -> Answer:
+        """Fly the mission from item ``first`` on."""
+
+    def pause(self, now: float) -> Answer:
+        """Hold."""
+
+    def resume(self, now: float) -> Answer:
+        """Go on with the mission that was paused."""
+
+
+class Control(Protocol):
+    """Who may command an aircraft."""
+
+    def is_stranger(self, sender: Sender, now: float) -> bool:
+        """Return True if another ground is in control."""
+
+    def is_stranger_at_its_address(self, sender: Sender, now: float) -> bool:
+        """Return True if another ground is in control, and is reached at the same address."""
+
+
+class MessageSource(Protocol):
+    """What streams are made of."""
+
+    @property
+    def builders(self) -> Mapping[MessageKey, Callable[[float], Built]]:
+        """Return what builds the messages of a component and id at a time (s): none while there is no data."""
+
+
+class Sample:
+    """The messages of an aircraft at ``now`` (s), each built when it is first due, once for all peers."""
+
+    def __init__(self, source: MessageSource, now: float) -> None:
+        self._builders = source.builders
+        self._now = now
+        self._built: dict[MessageKey, Built] = {}
+
+    def messages(self, key: MessageKey) -> Built:
+        """Return the messages of a component and message id."""
+        built = self._built.get(key)
+        if built is None:
+            built = self._built[key] = self._builders[key](self._now)
+        return built

@@ -1,0 +1,54 @@
+"""A vehicle as the MAVLink services command it: what one that carries a payload with others does, and refuses."""
+
+from gcs.mavlink import px4
+from gcs.mavlink.services.aircraft import Reposition, Sender
+from gcs.mavlink.services.answer import Answer
+from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.modes import team_only
+from vehicle_sim.mavlink.control_owner import ControlOwner
+
+
+class CoupledAircraft:
+    """A vehicle on a payload: flown in OFFBOARD by the ground in control; what would tear the team apart is denied."""
+
+    def __init__(self, autopilot: Autopilot, owner: ControlOwner) -> None:
+        self._autopilot = autopilot
+        self._owner = owner
+
+    def arm(self, now: float, force: bool = False) -> Answer:
+        """See :meth:`.Autopilot.arm`."""
+        return self._autopilot.arm(now, force)
+
+    def disarm(self, now: float, force: bool = False) -> Answer:
+        """See :meth:`.Autopilot.disarm`."""
+        return self._autopilot.disarm(force)
+
+    def enter_mode(self, custom_mode: int, sender: Sender, now: float) -> Answer:
+        """Enter a mode; OFFBOARD on the set-points of ``sender``."""
+        if custom_mode == px4.MODE_OFFBOARD:
+            return self._owner.enter_offboard(sender, now)
+        return self._autopilot.enter_mode(custom_mode, now)
+
+    def take_off(self, altitude: float, now: float) -> Answer:
+        """Refuse."""
+        return team_only("Takeoff")
+
+    def reposition(self, goal: Reposition, now: float) -> Answer:
+        """Refuse."""
+        return team_only("Reposition")
+
+    def change_speed(self, speed: float, now: float) -> Answer:
+        """Refuse."""
+        return team_only("Speed change")
+
+    def start_mission(self, first: int, now: float) -> Answer:
+        """Refuse."""
+        return team_only("Mission")
+
+    def pause(self, now: float) -> Answer:
+        """Refuse."""
+        return team_only("Pause")
+
+    def resume(self, now: float) -> Answer:
+        """Refuse."""
+        return team_only("Mission")

@@ -1,0 +1,36 @@
+"""The streams of a vehicle: which messages it sends unasked, and how often."""
+
+from dataclasses import fields
+
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+
+from gcs.config.vehicle_settings import StreamIntervals
+from gcs.mavlink import px4
+from gcs.mavlink.services.aircraft import MessageKey
+
+_AUTOPILOT, _PAYLOAD = px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT
+
+
+def default_intervals(intervals: StreamIntervals, telemetry_interval: float) -> dict[MessageKey, float]:
+    """Return the intervals (s) of all streams by component and message, in the order in which they are sent.
+
+    ``telemetry_interval`` of position and attitude, the vehicle's and the payload's. With every sample goes the
+    set-point that was being flown, because set-points may be lost. A scan is sent as soon as there is one, behind the
+    attitude and position at which it was made: its returns, then the message that ends it.
+    """
+    return {
+        # The settings have the names of the messages.
+        **{
+            (_AUTOPILOT, getattr(mavlink, f"MAVLINK_MSG_ID_{setting.name.upper()}")): getattr(intervals, setting.name)
+            for setting in fields(intervals)
+        },
+        (_PAYLOAD, mavlink.MAVLINK_MSG_ID_HEARTBEAT): intervals.heartbeat,
+        (_PAYLOAD, mavlink.MAVLINK_MSG_ID_VIBRATION): intervals.vibration,
+        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION): telemetry_interval,
+        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED): telemetry_interval,
+        (_PAYLOAD, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION): telemetry_interval,
+        (_PAYLOAD, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED): telemetry_interval,
+        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET): telemetry_interval,
+        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D): telemetry_interval,
+        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE): telemetry_interval,
+    }
