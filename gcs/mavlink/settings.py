@@ -52,6 +52,7 @@ class PeerSettings(SettingsTable):
     """Service of an aircraft to its peers: every address that sends it valid MAVLink."""
 
     peer_timeout: float = 10.0  # s; without a message from a peer until its streams stop
+    peer_silence: float = 2.5  # s; without a message after which a newcomer may take its place: two HEARTBEATs missed
     peers_max: int = 8  # peers served at once, beside the ports of clients to which it always sends
     replies_max: int = 200  # answers queued for one peer; more requests at once are dropped
     interval_min: float = 0.004  # s; shortest interval that SET_MESSAGE_INTERVAL may set: the onboard loop's period

@@ -39,7 +39,9 @@ ARM, DISARM = command(400, 1), command(400, 0)
 class Bench:
     """A vehicle, a body that stands or flies, and grounds that keep what they were sent."""
 
-    def __init__(self, **options: Any) -> None:
+    def __init__(self, *, clients_answer: bool = True, **options: Any) -> None:
+        """``clients_answer``: who sends anything has addressed the vehicle by its id before."""
+        self.clients_answer = clients_answer
         self.vehicle = Vehicle(1, AIRFRAME, **options)
         self.body = Body()
         self.tick = 0
@@ -54,7 +56,10 @@ class Bench:
         return self.body.now
 
     def send(self, message: Any, sender: Any = GROUND, system: int = 255, component: int = 190) -> None:
+        is_new = not any(address == sender for address, *_ in self.codecs)
         codec = self.codecs.setdefault((sender, system, component), Codec(system, component))
+        if self.clients_answer and is_new:  # it knows the vehicle already
+            self.vehicle.receive(codec.encode(mavlink.MAVLink_mission_ack_message(1, 1, 0)), sender, self.now)
         self.vehicle.receive(codec.encode(message), sender, self.now)
 
     def request(self, message: Any, sender: Any = GROUND, system: int = 255, component: int = 190) -> list[Any]:

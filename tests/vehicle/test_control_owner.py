@@ -141,3 +141,12 @@ def test_number_of_streams_is_bounded_and_silent_ones_are_forgotten(owner):
         owner.take(setpoint(stamp), GROUND, now)
     assert owner.enter_offboard(GROUND, 10.6) == ACCEPTED
     assert owner.enter_offboard(senders[0], 10.6) == ACCEPTED
+
+
+def test_many_streams_of_one_address_leave_room_for_another(owner):
+    for system in range(1, SETTINGS.setpoint_streams_max + 1):
+        owner.take(setpoint(5000), (STRANGER[0], system), 10.0)
+    controlled(owner)
+    assert owner.in_control(10.1) == GROUND
+    owner.take(setpoint(5000), (STRANGER[0], 200), 10.1)
+    assert owner.enter_offboard((STRANGER[0], 200), 10.1) != ACCEPTED

@@ -60,7 +60,9 @@ def test_messages_of_one_sample_are_sent_once_and_others_again_and_again():
 
 
 def peer(settings=SETTINGS, **options):
-    return Peer(("10.0.0.1", 5), IDENTITIES, default_intervals(StreamIntervals(), 0.02), settings, **options)
+    found = Peer(("10.0.0.1", 5), IDENTITIES, default_intervals(StreamIntervals(), 0.02), settings, **options)
+    found.answered = True
+    return found
 
 
 def sent(to, now, stamp=0):
@@ -168,6 +170,14 @@ def peers(*clients):
     )  # fmt: skip
 
 
+def called_in(served, address, now, *, answered=True):
+    """Let an address send something; return whether it is served."""
+    found = served.receive_from(address, now)
+    if found is not None and not found.answered:
+        found.hear(21, addressed=answered)
+    return found is not None
+
+
 def addressees(served, now):
     return {address for _, address in served.datagrams_to_send(Builders(), now)}
 
@@ -182,27 +192,27 @@ def test_vehicle_without_peers_is_never_due_and_one_with_clients_at_once():
 @pytest.mark.parametrize("clients", [(), (GROUND,), (GROUND, SDK)])
 def test_number_of_peers_is_bounded_beside_the_clients(clients):
     served = peers(*clients)
-    found = [served.receive_from(address, 0.0) is not None for address in (FIRST, SECOND, THIRD)]
+    found = [called_in(served, address, 0.0) for address in (FIRST, SECOND, THIRD)]
     assert found == [True, True, False]
     assert served.receive_from(FIRST, 0.0) is served.receive_from(FIRST, 1.0)
     assert all(served.receive_from(client, 0.0) is not None for client in clients)
     assert len(list(served)) == 2 + len(clients)
 
 
-@pytest.mark.parametrize(("age", "room"), [(9.9, False), (10.1, True)])
-def test_silent_peer_makes_room_after_the_timeout(age, room):
+@pytest.mark.parametrize(("age", "room"), [(2.4, False), (2.6, True)])
+def test_silent_peer_makes_room_for_a_newcomer_that_has_answered_or_not(age, room):
     served = peers()
-    served.receive_from(FIRST, 0.0)
-    served.receive_from(SECOND, age)
-    assert (served.receive_from(THIRD, age) is not None) is room
+    called_in(served, FIRST, 0.0)
+    called_in(served, SECOND, age)
+    assert called_in(served, THIRD, age, answered=False) is room
     assert (FIRST in {peer.address for peer in served}) is not room
 
 
 def test_streams_of_a_silent_peer_stop_and_those_of_a_client_do_not():
     served = peers(GROUND, SDK)
     for address in (GROUND, FIRST, SECOND):
-        served.receive_from(address, 0.0)
-    served.receive_from(SECOND, 5.0)
+        called_in(served, address, 0.0)
+    called_in(served, SECOND, 5.0)
     assert addressees(served, 9.9) == {GROUND, SDK, FIRST, SECOND}
     assert addressees(served, 10.1) == {GROUND, SDK, SECOND}
     assert addressees(served, 3600.0) == {GROUND, SDK}
@@ -211,14 +221,14 @@ def test_streams_of_a_silent_peer_stop_and_those_of_a_client_do_not():
 def test_listener_is_a_client_that_has_never_sent_anything():
     served = peers(GROUND, SDK)
     assert served.listeners == {GROUND, SDK}
-    served.receive_from(FIRST, 0.0)
-    served.receive_from(SDK, 0.0)
+    called_in(served, FIRST, 0.0)
+    called_in(served, SDK, 0.0)
     assert served.listeners == {GROUND}
 
 
 def test_texts_and_changed_messages_go_to_all():
     served = peers(GROUND)
-    served.receive_from(FIRST, 0.0)
+    called_in(served, FIRST, 0.0)
     addressees(served, 0.0)
     served.send_statustext("landed")
     assert addressees(served, 0.001) == {FIRST, GROUND}
@@ -229,8 +239,34 @@ def test_texts_and_changed_messages_go_to_all():
 def test_message_is_built_once_for_all_peers():
     served, built = peers(), []
     for address in (FIRST, SECOND):
-        served.receive_from(address, 0.0)
+        called_in(served, address, 0.0)
     telemetry = Builders()
     telemetry.builders = {key: lambda now, key=key: built.append((key, now)) or BEAT for key in telemetry.builders}
     served.datagrams_to_send(telemetry, 7.0)
     assert sorted(built) == sorted((key, 7.0) for key in telemetry.builders)
+
+
+def test_one_that_has_not_answered_makes_room_at_once_and_one_that_has_does_not():
+    served = peers()
+    called_in(served, FIRST, 0.0)
+    called_in(served, SECOND, 0.0, answered=False)
+    assert called_in(served, THIRD, 0.1)
+    assert {peer.address for peer in served} == {FIRST, THIRD}
+    assert not called_in(served, SECOND, 0.2)
+
+
+def test_one_heartbeat_draws_no_more_than_it_sent_before_it_has_answered():
+    served, telemetry = peers(), Builders()
+    called_in(served, FIRST, 0.0, answered=False)
+    drawn = [len(d) for k in range(400) for d, _ in served.datagrams_to_send(telemetry, 0.02 * k)]
+    assert sum(drawn) == 21  # a HEARTBEAT in return
+    called_in(served, FIRST, 8.0, answered=False)  # it speaks again after that
+    assert sum(len(d) for d, _ in served.datagrams_to_send(telemetry, 8.0)) > 100
+
+
+def test_answers_to_one_that_has_not_answered_are_no_more_than_it_sent():
+    served = peers()
+    called_in(served, FIRST, 0.0, answered=False)
+    for _ in range(5):
+        served.receive_from(FIRST, 0.0).reply(mavlink.MAVLink_system_time_message(1 << 60, 1 << 30))
+    assert sum(len(d) for d, _ in served.datagrams_to_send(Builders(), 0.0)) <= 21

@@ -199,7 +199,8 @@ def test_answers_of_vehicles_arrive_at_the_same_time(lockstep):
     client.run(lambda: True)
     tick = client.last_tick
     codec = Codec(255, 1)
-    ping = codec.encode(mavlink.MAVLink_ping_message(0, 42, 0, 0))
+    known = codec.encode(mavlink.MAVLink_mission_ack_message(3, 1, 0))  # shows that it knows the vehicle
+    ping = known + codec.encode(mavlink.MAVLink_ping_message(0, 42, 0, 0))
     client.socket.sendto(ping, sockets.vehicles[2].getsockname())
     client.socket.sendto(Done(tick.serial, 5_000_000).encode(), client.clock)
     answers = []
@@ -283,8 +284,9 @@ def test_real_time_over_udp_sends_each_sample_when_it_is_due():
         ground.setblocking(False)
         codec = Codec(255, 1)
         heartbeat = mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 4, 3)
-        for endpoint in sockets.vehicles:
-            ground.sendto(codec.encode(heartbeat), endpoint.getsockname())
+        for i, endpoint in enumerate(sockets.vehicles, start=1):
+            known = mavlink.MAVLink_mission_ack_message(i, 1, 0)  # shows that it knows the vehicle
+            ground.sendto(codec.encode(heartbeat) + codec.encode(known), endpoint.getsockname())
         RealTimeDriver(swarm, sockets, wall, 1.0, wall).run()
         stamps = {}
         with contextlib.suppress(BlockingIOError):

@@ -7,8 +7,11 @@ from collections.abc import Iterator
 from typing import Self
 
 from gcs.mavlink.address import Address
-from gcs.mavlink.udp import DATAGRAM_MAX, DATAGRAMS_AT_ONCE, RECEIVE_BUFFER
+from gcs.mavlink.udp import DATAGRAM_MAX, RECEIVE_BUFFER
 from vehicle_sim.world.errors import SimulationError
+
+TURNS = 256
+"""Datagrams that are read of one port at once: of a flood of 20,000/s what comes in 13 ms."""
 
 
 class SwarmSockets:
@@ -46,9 +49,9 @@ class SwarmSockets:
         """Yield all that has arrived: the vehicle's system id, bytes, sender; each vehicle's in order.
 
         In turns, one of every vehicle that has any: to look at all at once costs less than to find each one empty.
-        No more than DATAGRAMS_AT_ONCE turns: a sender that is faster must not keep the reader from all else.
+        No more than TURNS turns: a sender that is faster must not keep the reader from all else.
         """
-        for _ in range(DATAGRAMS_AT_ONCE):
+        for _ in range(TURNS):
             ready = self._poll.poll(0)
             if not ready:
                 return

@@ -1,5 +1,7 @@
 """Control of a vehicle: the ground whose set-points fly it commands it, and while they come no other."""
 
+from collections import Counter
+
 from gcs.config.vehicle_settings import VehicleLinkSettings
 from gcs.mavlink.services.aircraft import Sender
 from gcs.mavlink.services.answer import Answer, rejected_for_now
@@ -54,7 +56,7 @@ class ControlOwner:
         stream = self._streams.get(sender)
         if stream is None:
             self._forget_silent(now)
-            if len(self._streams) >= self._settings.setpoint_streams_max:
+            if not self._has_room(sender):
                 return
             self._streams[sender] = _Stream(setpoint, now)
         else:
@@ -87,3 +89,17 @@ class ControlOwner:
         for sender, stream in tuple(self._streams.items()):
             if not self._is_fresh(stream.time, now):
                 del self._streams[sender]
+
+    def _has_room(self, sender: Sender) -> bool:
+        """Return True if there is room for the stream of a sender, or room was made.
+
+        One address, which may speak for many systems, gives way to another that has fewer streams.
+        """
+        if len(self._streams) < self._settings.setpoint_streams_max:
+            return True
+        of_address = Counter(address for address, _ in self._streams)
+        address, most = of_address.most_common(1)[0]
+        if most <= of_address[sender[0]] + 1:
+            return False
+        del self._streams[next(each for each in self._streams if each[0] == address and each != self._owner)]
+        return True

@@ -74,6 +74,7 @@ class Vehicle:
             (px4.PAYLOAD_UNIT_SYSTEM, px4.PAYLOAD_UNIT_COMPONENT),
         )
         self._own = own, payload_unit
+        self._systems = own[0], payload_unit[0]
         """System and component of all that it sends."""
         self._peers = Peers(
             lambda address, with_payload: Peer(
@@ -138,7 +139,8 @@ class Vehicle:
             self._latest = now
         peer = request = None
         is_ground = False
-        for received in self._decoder.decode(datagram):
+        messages = self._decoder.decode(datagram)
+        for received in messages:
             system, component = received.system, received.component
             if system == BROADCAST or (system, component) in self._own:
                 continue  # nobody, or its own messages coming back
@@ -146,6 +148,8 @@ class Vehicle:
                 peer = self._peers.receive_from(sender, now)
                 if peer is None:
                     return
+                if not peer.answered:
+                    peer.hear(len(datagram), addressed=any(m.target_system in self._systems for m in messages))
             if not is_ground and system != self.system_id:  # a companion of its own is none
                 is_ground = True
                 self.autopilot.ground_message_received(now)

@@ -17,6 +17,7 @@ TIME_TOLERANCE = 1e-6  # s: sums of steps are not exact
 
 _TEXT_LIMIT = 50
 _AUTOPILOT = px4.AUTOPILOT_COMPONENT
+_HEARTBEAT = _AUTOPILOT, mavlink.MAVLINK_MSG_ID_HEARTBEAT
 
 #: Messages of one sample, which begin with its stamp: never sent twice for the same one.
 _OF_ONE_SAMPLE = (
@@ -78,12 +79,28 @@ class Peer:
         """
         self.address = address
         self.heard_at = -math.inf
+        self.answered = False
+        """Whether it is known to receive what is sent to it: until then it gets no more bytes than it sent.
+
+        Anybody can write any address on a datagram, and would else have the streams sent there.
+        """
+        self._received = self._sent = 0
+        """Bytes from and to it before it has answered."""
         self.next_due = -math.inf
         self._settings = settings
         self._codecs = {component: Codec(system, component) for system, component in identities}
         self._replies: list[bytes] = []
         self._defaults = intervals
         self._streams = [Stream(*key, interval) for key, interval in intervals.items() if key[0] != silent]
+
+    def hear(self, size: int, *, addressed: bool) -> None:
+        """Take that ``size`` bytes have come; ``addressed``: some of them to this aircraft by a system id.
+
+        It has answered when it names a system id, or when it speaks again after something was sent to it.
+        """
+        self.answered = addressed or self._sent > 0
+        self._received += size
+        self.next_due = -math.inf
 
     def set_interval(self, message_id: int, interval: float, component: int = _AUTOPILOT) -> None:
         """Set the interval (s) of a message on this link; 0 restores the default, infinity stops it."""
@@ -124,6 +141,8 @@ class Peer:
         latest = now + TIME_TOLERANCE
         if latest < self.next_due:
             return []
+        if not self.answered:
+            return self._first_datagrams(sample)
         frames = self._replies
         self._replies = []
         next_due, repeat_interval = math.inf, self._settings.repeat_interval
@@ -139,4 +158,17 @@ class Peer:
             if stream.due < next_due:
                 next_due = stream.due
         self.next_due = next_due
+        return gather(frames)
+
+    def _first_datagrams(self, sample: Sample) -> list[bytes]:
+        """Return replies and HEARTBEAT to one that has not answered, as far as they are no more than it sent."""
+        codec = self._codecs[_AUTOPILOT]
+        heartbeat = [codec.frame(message) for message in sample.messages(_HEARTBEAT) if isinstance(message, tuple)]
+        frames: list[bytes] = []
+        for frame in [*self._replies, *heartbeat]:
+            if self._sent + len(frame) <= self._received:
+                self._sent += len(frame)
+                frames.append(frame)
+        self._replies = []
+        self.next_due = math.inf
         return gather(frames)

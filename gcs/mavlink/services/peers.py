@@ -16,7 +16,10 @@ NewPeer = Callable[[Address, bool], Peer]
 class Peers:
     """Every address that has sent valid MAVLink lately, up to a bounded number, beside the ports of clients.
 
-    A client's port gets the streams from the start and for ever, whether anybody answers there or not.
+    A client's port gets the streams from the start and for ever, whether anybody answers there or not. Any other gets
+    them once it has answered (:attr:`.Peer.answered`). When there are as many as are served, a newcomer takes the place
+    of the one that was silent longest, of one that has not answered first; a ground that sends its HEARTBEAT every
+    second keeps its place.
     """
 
     def __init__(self, new_peer: NewPeer, clients: Mapping[Address, bool], settings: PeerSettings) -> None:
@@ -27,16 +30,17 @@ class Peers:
         self.listeners = set(clients)
         """Ports of clients from which nothing has come yet."""
         self._peers = {address: new_peer(address, with_payload) for address, with_payload in clients.items()}
+        for peer in self._peers.values():
+            peer.answered = True
 
     def __iter__(self) -> Iterator[Peer]:
         return iter(self._peers.values())
 
     def receive_from(self, address: Address, now: float) -> Peer | None:
-        """Return the peer of an address that sent valid MAVLink, streaming from now on; None: there are too many."""
+        """Return the peer of an address that sent valid MAVLink; None: there are too many."""
         peer = self._peers.get(address)
         if peer is None:
-            self._remove_silent(now)
-            if len(self._peers) >= self._settings.peers_max + len(self._clients):
+            if not self._has_room(now):
                 return None
             peer = self._peers[address] = self._new_peer(address, True)
         peer.heard_at = now
@@ -79,7 +83,13 @@ class Peers:
     def _is_gone(self, peer: Peer, now: float) -> bool:
         return now - peer.heard_at > self._settings.peer_timeout and peer.address not in self._clients
 
-    def _remove_silent(self, now: float) -> None:
-        for address, peer in tuple(self._peers.items()):
-            if self._is_gone(peer, now):
-                del self._peers[address]
+    def _has_room(self, now: float) -> bool:
+        """Return True if there is room for one more, or room was made."""
+        others = [peer for address, peer in self._peers.items() if address not in self._clients]
+        if len(others) < self._settings.peers_max:
+            return True
+        last = min(others, key=lambda peer: (peer.answered, peer.heard_at))
+        if last.answered and now - last.heard_at <= self._settings.peer_silence:
+            return False
+        del self._peers[last.address]
+        return True
