@@ -42,6 +42,22 @@ def distances_of_offsets(bodies: Array2, offsets: Array3) -> Array2:
 
 
 @kernel
+def distances_of_points(bodies: Array2, reach: Array1, centres: Array2, points: Array2, far: float) -> Array2:
+    """Return signed distances (B, n) (m) of ``points`` (n, 3) to ``bodies`` (B, 14) at ``centres`` (B, 3), world.
+
+    Those that are surely above ``far`` (m), of bodies within upright cylinders of radius ``reach`` (B,) (m), are inf.
+    """
+    count, n = centres.shape[0], points.shape[0]
+    distance = np.empty((count, n))
+    for b in range(count):
+        limit = (far + reach[b]) ** 2
+        for i in range(n):
+            x, y, z = points[i, 0] - centres[b, 0], points[i, 1] - centres[b, 1], points[i, 2] - centres[b, 2]
+            distance[b, i] = math.inf if x * x + y * y > limit else distance_to(bodies, b, x, y, z)
+    return distance
+
+
+@kernel
 def mean_distances_of_groups(
     bodies: Array2, reach: Array1, centres: Array2, points: Array2, starts: Indices1, far: float
 ) -> Array2:

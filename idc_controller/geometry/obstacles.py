@@ -12,7 +12,11 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from idc_controller.arrays import Array, Indices
-from idc_controller.geometry.distance_kernels import distances_of_offsets, mean_distances_of_groups
+from idc_controller.geometry.distance_kernels import (
+    distances_of_offsets,
+    distances_of_points,
+    mean_distances_of_groups,
+)
 from idc_controller.geometry.shape import ROW, Shape
 
 
@@ -88,7 +92,19 @@ class Bodies:
 
     def distance(self, points: Array, centres: Array) -> Array:
         """Signed distance (m) from ``points`` (n, 3) to the surfaces of bodies at ``centres`` (B, 3): (B, n)."""
-        return self.from_offsets(points - centres[:, None])
+        return self.distance_among(np.arange(len(self.shapes)), points, centres)
+
+    def distance_among(self, indices: Indices, points: Array, centres: Array, far: float = math.inf) -> Array:
+        """Return the same for the bodies of different ``indices`` (b,) only: (b, n).
+
+        Distances that are surely above ``far`` (m) may be inf.
+        """
+        reach = self._horizontal_reach[indices] if far < math.inf else np.zeros(len(indices))
+        distance = distances_of_points(self.rows[indices], reach, centres[indices], np.ascontiguousarray(points), far)
+        for i, shape in self.others:
+            for k in np.flatnonzero(indices == i):
+                distance[k] = shape.distance((points - centres[i]) @ shape.rotation)
+        return distance
 
     def from_offsets(self, offsets: Array) -> Array:
         """Return the same for points relative to each body's centre (B, n, 3)."""

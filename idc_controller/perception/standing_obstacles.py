@@ -14,6 +14,8 @@ from idc_controller.perception.convex_pieces import ConvexPieces
 from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.standing_map import StandingMap
 
+_FAR = 2.0  # m; farther obstacles of the map are not distinguished
+
 NamedBody = tuple[str, Shape, Array]
 """Name, shape, and centre (3,) (NED, m)."""
 Estimate = Callable[[], tuple[Shape, Array]]
@@ -83,25 +85,26 @@ class StandingObstacles:
         self._is_body = np.array([o.is_body for o in known], dtype=bool)
 
     def next_to(self, points: Array, origin: Array) -> NextObstacles:
-        """Return those next to points (n, 3), seen from ``origin`` (3,); those beyond 2 m may be left out."""
+        """Return those next to points (n, 3), seen from ``origin`` (3,); those beyond :data:`_FAR` may be left out."""
         far = np.full(len(points), math.inf)
         none = NextObstacles(far, np.full(len(points), -1), far, far)
         if not len(points) or not self.names:
             return none
         farthest = float(np.hypot(*(points[:, :2] - origin[:2]).T).max())
-        near = self._at_rest.near(origin, farthest + 2.0)
+        near = self._at_rest.near(origin, farthest + _FAR)
         if not len(near):
             return none
-        shapes = [self.bodies.shapes[i] for i in near.tolist()]
-        distance = np.abs(Bodies(shapes).distance(points, self.centres[near]))
+        distance = self.bodies.distance_among(near, points, self.centres, _FAR)
+        np.abs(distance, out=distance)
         next_of_all, bodies = distance.min(axis=0), near[self._is_body[near]]
         if not len(bodies):
             return none._replace(distance=next_of_all)
         if len(bodies) < len(near):
             distance = distance[self._is_body[near]]
-        next_body = distance.argmin(axis=0)
-        others = np.partition(distance, 1, axis=0)[1] if len(bodies) > 1 else far
-        return NextObstacles(next_of_all, bodies[next_body], distance[next_body, np.arange(len(points))], others)
+        next_body, each = distance.argmin(axis=0), np.arange(len(points))
+        body_distance = distance[next_body, each]
+        distance[next_body, each] = math.inf
+        return NextObstacles(next_of_all, bodies[next_body], body_distance, distance.min(axis=0))
 
 
 class SeenObstacles:

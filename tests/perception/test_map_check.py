@@ -273,14 +273,14 @@ def test_unknown_obstacle_beside_one_of_the_map_is_no_offset():
 
 
 def test_limit_of_an_area_is_nothing_that_can_be_detected():
-    places = (("a", (5.0, 0.0, -6.0)), ("b", (5.0, 3.0, -6.0)), ("limit", (5.0, -1.0, -6.0)))
+    places = (("a", (5.0, 0.0, -6.0)), ("b", (5.0, 1.2, -6.0)), ("limit", (5.0, -1.0, -6.0)))
     known = known_obstacles([Obstacle(name, place, Sphere(0.5), True) for name, place in places])
     standing = StandingObstacles([o._replace(is_body=o.name != "limit") for o in known])
     found = standing.next_to(np.array([[4.4, 0.0, -6.0], [4.4, -1.0, -6.0], [4.4, 2.0, -6.0]]), HERE)
-    assert found.distance == pytest.approx([0.1, 0.1, np.hypot(0.6, 1.0) - 0.5])
+    assert found.distance == pytest.approx([0.1, 0.1, 0.5])
     assert found.body.tolist() == [0, 0, 1]
-    assert found.body_distance == pytest.approx([0.1, np.hypot(0.6, 1.0) - 0.5, np.hypot(0.6, 1.0) - 0.5])
-    assert found.others == pytest.approx([np.hypot(0.6, 3.0) - 0.5, np.hypot(0.6, 4.0) - 0.5, np.hypot(0.6, 2.0) - 0.5])
+    assert found.body_distance == pytest.approx([0.1, np.hypot(0.6, 1.0) - 0.5, 0.5])
+    assert found.others == pytest.approx([np.hypot(0.6, 1.2) - 0.5, np.hypot(0.6, 2.2) - 0.5, np.hypot(0.6, 2.0) - 0.5])
 
 
 def test_return_that_two_obstacles_may_have_produced_is_no_evidence():
