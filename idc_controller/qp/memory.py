@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 _LARGE = 128 * 1024  # bytes, from which on glibc gives a block pages of its own until blocks of more have been freed
-_MMAP_THRESHOLD = -3  # of mallopt
+_TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3  # of mallopt
+_LARGEST_THRESHOLD = 32 * 1024 * 1024  # bytes, up to which glibc raises the threshold by itself, until it is set
 _IS_MAPPED = 2  # in the size of a block, which stands before it
 
 
@@ -32,6 +33,9 @@ def pages_of_their_own() -> Iterator[None]:
     finally:
         for block in taken:
             c.free(block)
+        # With pages of their own, the arrays of a flight would have each page cleared at every use.
+        c.mallopt(_MMAP_THRESHOLD, _LARGEST_THRESHOLD)
+        c.mallopt(_TRIM_THRESHOLD, 2 * _LARGEST_THRESHOLD)
 
 
 def _is_mapped(block: int) -> bool:

@@ -26,6 +26,7 @@ from idc_controller.trajectory.flatness_kernels import Team, flat_map
 # Spacing of the samples from which derivatives of the UAVs' forces are taken (s): the trajectory is smooth up to snap
 # only, and these derivatives go beyond it.
 STENCIL = 0.05
+_STENCIL_TIMES = np.arange(-2, 3) * STENCIL
 _SAME = 1e-9
 """Times closer than this (s) are the same."""
 
@@ -98,14 +99,10 @@ def flat_reference(
 ) -> FlatReference:
     """Exact reference at ``times`` (K,) (s): states and the set-points that hold the vehicles on it."""
     p, N = parameters, parameters.number_of_uavs
-    grid: Array = (times[:, None] + np.arange(-2, 3) * STENCIL).ravel()
+    grid = (times[:, None] + _STENCIL_TIMES).ravel()
     # A horizon whose stages are as far apart as the stencil's points needs most times five times over.
-    ticks = np.rint(grid / _SAME)
-    order = ticks.argsort(kind="stable")
-    is_new = np.append(True, np.diff(ticks[order]) > 0.0)
-    index = np.empty(len(grid), dtype=int)
-    index[order] = np.cumsum(is_new) - 1
-    grid, places = grid[order[is_new]], index.reshape(-1, 5)
+    _, first, places = np.unique(np.rint(grid / _SAME), return_index=True, return_inverse=True)
+    grid, places = grid[first], places.reshape(-1, 5)
     derivatives = np.ascontiguousarray(trajectory.derivatives(grid))
     constant = np.empty((N, 3))
     constant[:] = load.uav_force
