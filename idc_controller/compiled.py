@@ -20,6 +20,8 @@ from idc_controller import uncompiled
 Function = TypeVar("Function", bound=Callable[..., Any])
 _CONFIG: Any = numba_config
 
+_OPTIONS: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True}
+_INLINED: dict[str, Any] = {**_OPTIONS, "no_cpython_wrapper": True}
 _NUMBERS = {float: types.float64, int: types.int64, bool: types.boolean, type(None): types.none}
 
 
@@ -30,8 +32,11 @@ def kernel(function: Function) -> Function:
     Arithmetic keeps its order (no fast math), and a division by zero gives inf or nan as in numpy. The function itself
     stays at hand as attribute ``py_func``. Modules of kernels are named ``*kernels.py``: installation compiles them all
     (``python -m vehicle_sim.app.compile_kernels``).
+
+    An array is written into a part of another one by a loop: for an assignment numba compiles a formatted error
+    message, which takes seconds.
     """
-    dispatcher: Any = inlined(function)
+    dispatcher: Any = numba.njit(**_OPTIONS)(function)
     if dispatcher is not function:  # as it is with NUMBA_DISABLE_JIT
         cache: Any = _KernelCache
         dispatcher._cache = cache(function)
@@ -55,8 +60,8 @@ def _type_of(hint: Any) -> Any:
 
 
 def inlined(function: Function) -> Function:
-    """Compile a small function as a part of the kernels that call it."""
-    return cast(Function, numba.njit(error_model="numpy")(function))
+    """Compile a small function as a part of the kernels that call it; Python cannot call it."""
+    return cast(Function, numba.njit(**_INLINED)(function))
 
 
 class _ByContent(_CacheLocator):
@@ -118,7 +123,7 @@ def _checksum(function: Callable[..., Any]) -> str:
     parts = (
         *_parts(function.__code__, function.__globals__),
         *_parts_of_value(bound, ()),
-        *_parts(inlined.__code__, {}),  # numba's options
+        repr(_INLINED),
         numba.__version__,
     )
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()

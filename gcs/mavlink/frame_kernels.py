@@ -144,9 +144,11 @@ def framed_run(header: Cells1, payloads: Cells2, extra: int) -> Cells2:
     frames = np.empty((count, length + AROUND), np.uint8)
     for i in range(count):
         frame = frames[i]
-        frame[:HEADER] = header
+        for k in range(HEADER):
+            frame[k] = header[k]
         frame[_SEQUENCE] = (header[_SEQUENCE] + i) & 0xFF
-        frame[HEADER : HEADER + length] = payloads[i]
+        for k in range(length):
+            frame[HEADER + k] = payloads[i, k]
         checksum = _checksum(frame, 1, HEADER + length, extra)
         frame[HEADER + length], frame[HEADER + length + 1] = checksum & 0xFF, checksum >> 8
     return frames
@@ -175,7 +177,8 @@ def stamped_frames(data: Cells1, ends: Indices1, stamps: Indices1) -> Cells1:
             for byte in range(STAMP_BYTES):
                 records[count + byte] = (stamps[k] >> 8 * (STAMP_BYTES - 1 - byte)) & 0xFF
             count += STAMP_BYTES
-            records[count : count + end - at] = data[at:end]
+            for k in range(at, end):
+                records[count + k - at] = data[k]
             count += end - at
             at = end
     return records[:count]

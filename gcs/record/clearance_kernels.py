@@ -119,7 +119,8 @@ def lower_clearance(
             w -= _obstacle_support(corners, box, rotation, offsets[t], v)
             if dot(v, v) - dot(v, w) <= TOLERANCE * distance and count > 0:
                 break
-            simplex[count] = w
+            for i in range(3):
+                simplex[count, i] = w[i]
             count = nearest_on_simplex(simplex, count + 1, v)
             if count == 4:
                 distance = 0.0

@@ -20,7 +20,9 @@ def _state(x: Array, first: Array, columns: Indices, coefficients: Array, B: Arr
     """Return F x + B u (n,), see :func:`propagated`; ``first``: rows of F (d, n)."""
     d = len(first)
     result: Array = np.dot(B, u)
-    result[:d] += np.dot(first, x)
+    upper = np.dot(first, x)
+    for r in range(d):
+        result[r] += upper[r]
     for r in range(len(columns)):
         for a in range(columns.shape[1]):
             if coefficients[r, a] != 0.0:
@@ -64,7 +66,10 @@ def propagated(
     result = _state(x, first, columns, coefficients, B, u)
     covariance = np.empty((n, n))
     top = np.dot(first, P)
-    covariance[:d, :d] = np.dot(top, first.T)
+    upper = np.dot(top, first.T)
+    for r in range(d):
+        for c in range(d):
+            covariance[r, c] = upper[r, c]
     # The last columns of F P as rows: the last rows of F combine whole ones of these.
     rest, row = np.empty((n - d, n)), np.empty(n - d)
     for o in range(d):
@@ -211,7 +216,11 @@ def about_reference(
         for c in range(3):
             direction[k, c] = (g if c == 2 else 0.0) - (payload[2, k, c] + payload[2, k + 1, c]) / 2
     for k in range(K):
-        nominal[k, :n], nominal[k, n : n + 3], nominal[k, -1] = x[k], on_payload[k], mass_excess
+        for c in range(n):
+            nominal[k, c] = x[k, c]
+        for c in range(3):
+            nominal[k, n + c] = on_payload[k, c]
+        nominal[k, -1] = mass_excess
         for i in range(N):
             nominal[k, n + 3 + 2 * i], nominal[k, n + 4 + 2 * i] = on_uavs[k, i, 0], on_uavs[k, i, 1]
     return mean, direction, nominal

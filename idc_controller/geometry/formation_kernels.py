@@ -23,7 +23,9 @@ def hull_points(
     number, rim = rims.shape[0], rims.shape[1]
     points = np.empty((len(acceleration), len(corners) + number * rim, 3))
     for k in range(len(acceleration)):
-        points[k, : len(corners)] = corners
+        for c in range(len(corners)):
+            for axis in range(3):
+                points[k, c, axis] = corners[c, axis]
         for i in range(number):
             lever = lengths[i] / max(g - acceleration[k, 2], 0.2 * g)
             for axis in range(3):

@@ -52,6 +52,13 @@ def dot(a: Array, b: Array) -> float:
 
 
 @inlined
+def _copy(a: Array, b: Array) -> None:
+    """Write a vector (3,) into another one."""
+    for i in range(3):
+        b[i] = a[i]
+
+
+@inlined
 def _nearest_on_edge(a: Array, b: Array, v: Array) -> int:
     """Write the point of an edge nearest to the origin into ``v`` (3,); return the bits of the ends it lies between."""
     along = 0.0
@@ -60,10 +67,10 @@ def _nearest_on_edge(a: Array, b: Array, v: Array) -> int:
         along -= a[i] * (b[i] - a[i])
         square += (b[i] - a[i]) ** 2
     if along <= 0.0:
-        v[:] = a
+        _copy(a, v)
         return 1
     if along >= square:
-        v[:] = b
+        _copy(b, v)
         return 2
     for i in range(3):
         v[i] = a[i] + along / square * (b[i] - a[i])
@@ -90,11 +97,11 @@ def _nearest_on_triangle(a: Array, b: Array, c: Array, v: Array) -> int:
     found = _nearest_on_edge(a, c, other)
     if dot(other, other) < least:
         least, bits = dot(other, other), (found & 1) | (found & 2) << 1
-        v[:] = other
+        _copy(other, v)
     found = _nearest_on_edge(b, c, other)
     if dot(other, other) < least:
         bits = found << 1
-        v[:] = other
+        _copy(other, v)
     return bits
 
 
@@ -106,7 +113,7 @@ def nearest_on_simplex(simplex: Array, count: int, v: Array) -> int:
     """
     bits = 1
     if count == 1:
-        v[:] = simplex[0]
+        _copy(simplex[0], v)
     elif count == 2:
         bits = _nearest_on_edge(simplex[0], simplex[1], v)
     elif count == 3:
@@ -126,11 +133,11 @@ def nearest_on_simplex(simplex: Array, count: int, v: Array) -> int:
             if dot(other, other) < least:
                 least = dot(other, other)
                 bits = (found & 1) << i | (found >> 1 & 1) << j | (found >> 2 & 1) << k
-                v[:] = other
+                _copy(other, v)
     kept = 0
     for i in range(count):
         if bits >> i & 1:
-            simplex[kept] = simplex[i]
+            _copy(simplex[i], simplex[kept])
             kept += 1
     return kept
 
@@ -144,7 +151,7 @@ def _distance(points: Array, bodies: Array, b: int, offset: Array, v: Array) -> 
     x, y, z = offset[0], offset[1], offset[2]
     simplex, before = np.empty((4, 3)), np.empty(3)
     _support(points, bodies, b, x, y, z, v, simplex, 0)
-    v[:] = simplex[0]
+    _copy(simplex[0], v)
     count, square, gap = 1, dot(v, v), math.inf
     for _ in range(_MOST_STEPS):
         if square < _CONTACT * _CONTACT:
@@ -153,13 +160,13 @@ def _distance(points: Array, bodies: Array, b: int, offset: Array, v: Array) -> 
         gap = square - dot(v, simplex[count])
         if gap <= (_TIGHT if bodies[b, 3] == 0.0 else _TIGHT_ROUND) * square:
             break
-        before[:] = v
+        _copy(v, before)
         count = nearest_on_simplex(simplex, count + 1, v)
         if count == 4:
             return -1.0
         now = dot(v, v)
         if now >= square:
-            v[:] = before
+            _copy(before, v)
             break
         square = now
     distance = math.sqrt(square)
@@ -205,7 +212,7 @@ def measure_distances(
                 continue
             distance = -1.0
             if rounded[b]:
-                v[:] = normals[f, k]
+                _copy(normals[f, k], v)
                 distance = _distance(points[k], bodies, b, offsets[f, k], v)
             missing[f, k] = distance < 0.0
             if missing[f, k]:

@@ -266,6 +266,7 @@ def followed_rays(voxels: Voxels, rays: Rays, first: int, stride: int) -> Array2
             continue
         a, b = _direction_cell(x, y, z, length)
         if near[a, b] or r % stride == first % stride:
-            found[n] = free[r]
+            for i in range(3):
+                found[n, i] = free[r, i]
             n += 1
     return found[:n].copy()

@@ -41,7 +41,9 @@ def _mixed(weight: Array, x: Array, P: Array, change: float) -> tuple[Array, Arr
             for a in range(3):
                 for b in range(3):
                     new_P[j, axis, a, b] -= new_x[j, axis, a] * new_x[j, axis, b]
-        new_x[j] += common
+        for axis in range(3):
+            for a in range(3):
+                new_x[j, axis, a] += common[axis, a]
     return total, new_x, new_P
 
 

@@ -70,7 +70,9 @@ def by_sector(rays: Rays) -> tuple[Array2, Mask1, Indices1]:
         to = place[sectors[r]]
         place[sectors[r]] += 1
         returned[to] = r < len(returns)
-        ends[to] = returns[r] if r < len(returns) else free[r - len(returns)]
+        end = returns[r] if r < len(returns) else free[r - len(returns)]
+        for i in range(3):
+            ends[to, i] = end[i]
     return ends, returned, first
 
 

@@ -41,7 +41,9 @@ def remembered(
         first += 1
     kept = seen.shape[0] - first
     rows = np.empty((kept + points.shape[0], 5))
-    rows[:kept] = seen[first:]
+    for i in range(kept):
+        for k in range(5):
+            rows[i, k] = seen[first + i, k]
     for i in range(points.shape[0]):
         rows[kept + i, 0] = time
         for k in range(3):

@@ -52,7 +52,8 @@ def spline(control_points: Array2, basis: Array3, arguments: Array1, order: int)
                 result[d, i, 0] += weight * x
                 result[d, i, 1] += weight * y
                 result[d, i, 2] += weight * z
-        result[0, i] += base
+        for axis in range(3):
+            result[0, i, axis] += base[axis]
     return result
 
 
@@ -82,7 +83,8 @@ def _phase(coefficients: Array, knots: Array, times: Array, order: int) -> Array
     values = np.empty(order + 1)
     for i, time in enumerate(times):
         _polynomial(coefficients, knots, min(max(time, knots[0]), knots[-1]), values)
-        result[:, i] = values
+        for d in range(order + 1):
+            result[d, i] = values[d]
         if time <= knots[0] or time >= knots[-1]:
             result[1:, i] = 0.0
     return result
@@ -230,7 +232,8 @@ def deflect(
         if rate != 1.0:
             for d in range(1, len(derivatives)):
                 factor *= rate
-                derivatives[d, i] *= factor
+                for axis in range(3):
+                    derivatives[d, i, axis] *= factor
         if rows[piece] >= 0:
             elapsed = max(time - scalings[piece, 0], 0.0)
             _add_chain(states, rows[piece], period, stages, elapsed, derivatives[:, i])

@@ -51,7 +51,7 @@ def landed(found: Array) -> None:
     found[LIGHT_SINCE] = found[TOUCHING_SINCE] = math.inf
 
 
-@inlined
+@kernel
 def mixed_forces(
     thrust: float, tau_x: float, tau_y: float, tau_z: float, top: float, per_roll_pitch: float, per_yaw: float
 ) -> Four:
@@ -80,7 +80,7 @@ def mixed_forces(
     return level + first + yaw, level - first + yaw, level + third - yaw, level - third - yaw
 
 
-@inlined
+@kernel
 def wanted_acceleration(
     attitude: Quaternion, rates: Vector, target: Quaternion, target_rates: Vector, two_kp: float, kd: float
 ) -> Vector:
@@ -167,9 +167,11 @@ def take_fresh_samples(
             same_rates = same_rates and s[k] == last[i, k]
             still = still and s[k] == 0.0
         fresh[i] = are_numbers and not same_attitude and (still or not same_rates)
-        last[i] = s
+        for k in range(s.shape[0]):
+            last[i, k] = s[k]
+            if fresh[i]:
+                estimates[i, k] = s[k]
         if fresh[i]:
-            estimates[i] = s
             stamps[i, SAMPLE_TIME], stamps[i, FRESH_AT] = times[i], now
 
 

@@ -156,22 +156,26 @@ def reckon(
         elif ratio[s] != ratio[s]:
             ratio[s] = 0.0
             if size == 4:
-                integral[s] = values[first : first + 4]
+                for c in range(4):
+                    integral[s, c] = values[first + c]
         if count[0] == kept:
             for k in range(kept - 1):
-                samples[k] = samples[k + 1]
+                for c in range(samples.shape[1]):
+                    samples[k, c] = samples[k + 1, c]
         else:
             count[0] += 1
         newest = samples[count[0] - 1]
         newest[0] = times[j]
-        newest[1 : 1 + size + 3] = values[first:at]
+        for c in range(size + 3):
+            newest[1 + c] = values[first + c]
         if count[0] == kept:
             middle = samples[kept // 2]
             duration = middle[0] - samples[kept // 2 - 1, 0] if count[2] > count[1] else 0.0
             if count[2] == capacity:
                 length = count[2] - count[1]
                 for k in range(length):
-                    differences[s, k] = differences[s, count[1] + k]
+                    for c in range(differences.shape[2]):
+                        differences[s, k, c] = differences[s, count[1] + k, c]
                 count[1], count[2] = 0, length
             row = differences[s, count[2]]
             count[2] += 1

@@ -138,7 +138,9 @@ def fitted_round(
     n, size, is_pole = points.shape[0], axes + 1, axes == 2
     own_variance = pose_variance + scatter + model_variance
     mean, prior = np.empty(size), np.full(size, 1.0 / prior_variance)
-    mean[:axes], mean[axes], prior[axes] = expected[:axes], radius, 1.0 / radius_variance
+    for i in range(axes):
+        mean[i] = expected[i]
+    mean[axes], prior[axes] = radius, 1.0 / radius_variance
     theta, information, H = mean.copy(), np.empty((size, size)), np.empty((n, size))
     for _ in range(iterations):
         residual, variance = _residuals(points, origins, theta, noise, own_variance, scatter, H)
@@ -175,5 +177,6 @@ def fitted_round(
     score = np.minimum(squared / variance, SCORE_CAP).mean()
     excess = np.median(squared) / MEDIAN_OF_SQUARE * n / max(n - free, 1) - np.median(variance)
     place, spread = np.zeros(3), np.zeros(3)
-    place[:axes], spread[:axes] = theta[:axes], variances[:axes]
+    for i in range(axes):
+        place[i], spread[i] = theta[i], variances[i]
     return place, spread, theta[axes], variances[axes], score, excess
