@@ -1,6 +1,7 @@
 """Commands and frames of mission items, by the numbers and names of MAVLink's common and ArduPilot's dialect.
 
-They stand here because importing the dialect takes longer than reading a mission; a test compares them with it.
+Those that are flown stand here because importing the dialect takes longer than reading a mission; a test compares them
+with it.
 """
 
 from enum import IntEnum
@@ -61,71 +62,17 @@ LAST_NAVIGATION = 95
 RALLY_POINT = 5100
 FENCE_AND_RALLY = frozenset({*range(5000, 5005), RALLY_POINT})
 
-LEFT_OUT = {
+LEFT_OUT = frozenset({
     # camera and video
-    200: "DO_CONTROL_VIDEO",
-    202: "DO_DIGICAM_CONFIGURE",
-    203: "DO_DIGICAM_CONTROL",
-    206: "DO_SET_CAM_TRIGG_DIST",
-    214: "DO_SET_CAM_TRIGG_INTERVAL",
-    521: "REQUEST_CAMERA_INFORMATION",
-    522: "REQUEST_CAMERA_SETTINGS",
-    525: "REQUEST_STORAGE_INFORMATION",
-    526: "STORAGE_FORMAT",
-    527: "REQUEST_CAMERA_CAPTURE_STATUS",
-    529: "RESET_CAMERA_SETTINGS",
-    530: "SET_CAMERA_MODE",
-    531: "SET_CAMERA_ZOOM",
-    532: "SET_CAMERA_FOCUS",
-    533: "SET_STORAGE_USAGE",
-    534: "SET_CAMERA_SOURCE",
-    2000: "IMAGE_START_CAPTURE",
-    2001: "IMAGE_STOP_CAPTURE",
-    2002: "REQUEST_CAMERA_IMAGE_CAPTURE",
-    2003: "DO_TRIGGER_CONTROL",
-    2004: "CAMERA_TRACK_POINT",
-    2005: "CAMERA_TRACK_RECTANGLE",
-    2010: "CAMERA_STOP_TRACKING",
-    2500: "VIDEO_START_CAPTURE",
-    2501: "VIDEO_STOP_CAPTURE",
-    2502: "VIDEO_START_STREAMING",
-    2503: "VIDEO_STOP_STREAMING",
-    2504: "REQUEST_VIDEO_STREAM_INFORMATION",
-    2505: "REQUEST_VIDEO_STREAM_STATUS",
-    260: "OBLIQUE_SURVEY",
+    200, 202, 203, 206, 214, 260, 521, 522, 525, 526, 527, 529, 530, 531, 532, 533, 534, 2000, 2001, 2002, 2003, 2004,
+    2005, 2010, 2500, 2501, 2502, 2503, 2504, 2505,
     # gimbal and region of interest
-    204: "DO_MOUNT_CONFIGURE",
-    205: "DO_MOUNT_CONTROL",
-    220: "DO_MOUNT_CONTROL_QUAT",
-    1000: "DO_GIMBAL_MANAGER_PITCHYAW",
-    1001: "DO_GIMBAL_MANAGER_CONFIGURE",
-    80: "NAV_ROI",
-    201: "DO_SET_ROI",
-    195: "DO_SET_ROI_LOCATION",
-    196: "DO_SET_ROI_WPNEXT_OFFSET",
-    197: "DO_SET_ROI_NONE",
-    198: "DO_SET_ROI_SYSID",
-    # heading
-    115: "CONDITION_YAW",
+    80, 195, 196, 197, 198, 201, 204, 205, 220, 1000, 1001,
+    115,  # heading
     # other devices on board
-    183: "DO_SET_SERVO",
-    184: "DO_REPEAT_SERVO",
-    181: "DO_SET_RELAY",
-    182: "DO_REPEAT_RELAY",
-    187: "DO_SET_ACTUATOR",
-    211: "DO_GRIPPER",
-    216: "DO_SPRAYER",
-    217: "DO_SEND_SCRIPT_MESSAGE",
-    218: "DO_AUX_FUNCTION",
-    42600: "DO_WINCH",
-    405: "ILLUMINATOR_ON_OFF",
-    406: "DO_ILLUMINATOR_CONFIGURE",
-    2510: "LOGGING_START",
-    2511: "LOGGING_STOP",
-    # marks in the file, without an action
-    189: "DO_LAND_START",
-    188: "DO_RETURN_PATH_START",
-}
+    181, 182, 183, 184, 187, 211, 216, 217, 218, 405, 406, 2510, 2511, 42600,
+    188, 189,  # marks in the file, without an action
+})  # fmt: skip
 """Commands that concern devices which these vehicles do not have, the heading, which is kept, or nothing at all."""
 
 _NAMES = {command.value: command.name for command in Command}
@@ -133,7 +80,7 @@ _NAMES = {command.value: command.name for command in Command}
 
 def command_name(command: int) -> str:
     """Return ``NAV_WAYPOINT``, or the number where MAVLink's dialects have no name for it."""
-    if name := _NAMES.get(command) or LEFT_OUT.get(command):
+    if name := _NAMES.get(command):
         return name
     from pymavlink.dialects.v20 import ardupilotmega  # the common dialect and ArduPilot's
 

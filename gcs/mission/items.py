@@ -100,7 +100,7 @@ class WaypointFile:
 
 def nothing_to_fly(items: Sequence[MissionItem]) -> str | None:
     """Return the reason why a file with these items is no mission; None if it is one."""
-    commands = {item.command for item in items} - LEFT_OUT.keys()
+    commands = {item.command for item in items} - LEFT_OUT
     if commands and commands <= FENCE_AND_RALLY:
         what = "rally points" if commands == {RALLY_POINT} else "a fence"
         return f"{what}, not a mission: nothing to fly"
