@@ -96,7 +96,7 @@ claims-write: $(COMPILED)
 	$(VENV)/bin/python tests/claims/claims.py --write
 
 fault-tables: $(COMPILED)
-	$(VENV)/bin/python -m gcs.campaign.faults.tables_page docs/faults.md missions/detection.toml missions/false_alarms.toml
+	$(VENV)/bin/python tests/pages/fault_tables_page.py docs/faults.md missions/detection.toml missions/false_alarms.toml
 
 # OPTIONS: --quick, --long, --rounds N. ANCHOR_PYTHON: a Python with gym-pybullet-drones, else an equal loop is flown.
 benchmark: $(COMPILED)
@@ -112,9 +112,9 @@ benchmark-check: $(COMPILED)
 	$(VENV)/bin/python tests/benchmarks/check.py --base $(BASE)
 
 docs: $(INSTALLED)
-	$(VENV)/bin/python -m gcs.config.settings_page > docs/settings.md
-	$(VENV)/bin/python -m gcs.flight.listing > docs/failsafes.md
-	$(VENV)/bin/python -m gcs.faults.listing docs/faults.md
+	$(VENV)/bin/python tests/pages/settings_page.py > docs/settings.md
+	$(VENV)/bin/python tests/pages/failsafes_page.py > docs/failsafes.md
+	$(VENV)/bin/python tests/pages/kinds_page.py docs/faults.md
 	$(VENV)/bin/python tests/packaging/notice.py > NOTICE
 
 PICTURES := build/pictures

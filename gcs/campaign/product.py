@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import subprocess
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -14,8 +13,6 @@ from gcs.mission.read import read_mission
 from gcs.record.run_folder import to_json
 
 PACKAGES = ("gcs", "idc_controller", "vehicle_sim")
-FLOWN = (*PACKAGES, "missions", "pyproject.toml")
-"""What decides how a flight ends, in the project's folder."""
 
 
 @cache
@@ -34,19 +31,3 @@ def verdict_key(mission: Path, config: Path | None, *options: str) -> str:
     except GcsError as error:  # as it will be refused
         as_read = str(error)
     return digest(code_digest(), as_read, *options)
-
-
-def commit_of(folder: Path) -> str:
-    """Return the last commit that changed what is flown, and a digest of the changes since.
-
-    ``folder``: one in the project's folder.
-    """
-    try:
-        commit, changes = (
-            subprocess.run(["git", *arguments, "--", *FLOWN], cwd=folder.parent, check=True, capture_output=True,
-                text=True).stdout
-            for arguments in (("log", "-1", "--format=%h"), ("diff", "HEAD"))
-        )  # fmt: skip
-    except (OSError, subprocess.CalledProcessError):
-        return "an unknown commit"
-    return f"commit {commit.strip()}" + (f" with changes {digest(changes)}" if changes else "")

@@ -99,12 +99,6 @@ def extreme(
     return f"{of(values):.{digits}f} {unit}".strip() if values else "-"
 
 
-def markdown_table(rows: Sequence[Mapping[str, str]]) -> str:
-    """Return ``rows``, cells by title, one at least, as a table in Markdown."""
-    head, *lines = (f"| {' | '.join(cells)} |\n" for cells in (rows[0], *(row.values() for row in rows)))
-    return "".join([head, f"|{'---|' * len(rows[0])}\n", *lines])
-
-
 def headline(results: Sequence[Result], what: str, passed_means: str) -> Text:
     """Return how many of the results passed."""
     passed = sum(result.passed for result in results)
@@ -123,20 +117,3 @@ def failed_flights(results: Sequence[Result]) -> list[Text]:
     if len(failed) > SHOWN_FAILURES:
         lines.append(Text(f"... and {len(failed) - SHOWN_FAILURES} more that did not pass: see the table"))
     return lines
-
-
-def renewed(page: str, name: str, text: str) -> str:
-    """Return the page with ``text`` between the comments that begin and end the place ``name``.
-
-    Raises :class:`UnusableInput` for a page without them.
-    """
-    begin, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->"
-    if page.count(begin) != 1 or page.count(end) != 1 or page.index(begin) > page.index(end):
-        raise UnusableInput(f"the page has no place for the {name}: needs a line {begin.strip()} and a line {end}")
-    head, rest = page.split(begin)
-    return f"{head}{begin}{text}{end}{rest.split(end)[1]}"
-
-
-def made_by(command: str, commit: str, table: str) -> str:
-    """Return a table below the command that made it."""
-    return f"\nMade by `{command}` at {commit}:\n\n{table}\n"

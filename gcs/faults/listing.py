@@ -1,9 +1,7 @@
-"""The kinds of fault as text: as a list on the terminal, and as tables of the documentation."""
+"""The kinds of fault as text."""
 
-import sys
 from dataclasses import dataclass, fields
 from itertools import groupby
-from pathlib import Path
 from typing import Any
 
 from rich.console import Group, RenderableType
@@ -52,10 +50,10 @@ def kinds_list() -> RenderableType:
     for family, kinds in groupby(KINDS.values(), lambda kind: kind.family):
         items += [Text(), Text(family, style="bold underline")]
         if family == "values":
-            items += [Text(), Text("all that have a channel", style="italic"), _indented(_shared(), width)]
+            items += [Text(), Text("all that have a channel", style="italic"), _indented(shared_parameters(), width)]
         for kind in kinds:
-            items += [Text(), Text(kind.name, style="bold cyan"), Padding(Text(_summary(kind)), (0, 0, 0, 2))]
-            items += [_indented(own, width)] if (own := _own(kind)) else []
+            items += [Text(), Text(kind.name, style="bold cyan"), Padding(Text(summary(kind)), (0, 0, 0, 2))]
+            items += [_indented(own, width)] if (own := own_parameters(kind)) else []
     notes = Text(
         "Every fault has kind and start (s after take-off begins: when the first vehicle lifts off); it may have "
         "duration (s), every (s, from start to start) and times; vehicles where it is of vehicles; direction "
@@ -64,32 +62,12 @@ def kinds_list() -> RenderableType:
     return Group(notes, *items)
 
 
-def kinds_markdown() -> str:
-    """Return the same list as the tables of ``docs/faults.md``."""
-    lines: list[str] = []
-    for family, kinds in groupby(KINDS.values(), lambda kind: kind.family):
-        lines += ["", f"### {family}", ""]
-        if family == "values":
-            lines += ["All but `swapped_vehicles` have:", "", *(f"- {_sentence(p)}" for p in _shared()), ""]
-        lines += ["| kind | what it does | parameters |", "|---|---|---|"]
-        for kind in kinds:
-            own = "<br>".join(_sentence(p) for p in _own(kind)) or "none of its own"
-            lines.append(f"| `{kind.name}` | {_summary(kind)} | {own} |")
-    return "\n".join(lines).strip() + "\n"
-
-
-def renewed(page: str) -> str:
-    """Return ``docs/faults.md``, which ends with the tables, with those of the present kinds."""
-    text, heading, _ = page.rpartition("## Kinds\n\n")
-    return text + heading + kinds_markdown()
-
-
-def _shared() -> list[Parameter]:
+def shared_parameters() -> list[Parameter]:
     """Return the parameters that all faults of values have."""
     return [p for p in parameters(KINDS["stuck"]) if p.name in _SHARED]
 
 
-def _own(kind: Kind) -> list[Parameter]:
+def own_parameters(kind: Kind) -> list[Parameter]:
     """Return the parameters of a kind without the shared ones."""
     found = parameters(kind)
     return [p for p in found if p.name not in _SHARED] if issubclass(kind.settings, ValueFault) else found
@@ -100,20 +78,18 @@ def _indented(found: list[Parameter], width: int) -> RenderableType:
     table.add_column(min_width=width)
     table.add_column(ratio=1)
     for p in found:
-        table.add_row(Text(p.name, style="cyan"), Text(f"{p.description} ({_about(p)})"))
+        table.add_row(Text(p.name, style="cyan"), Text(f"{p.description} ({about(p)})"))
     return Padding(table, (0, 0, 0, 4))
 
 
-def _about(p: Parameter) -> str:
+def about(p: Parameter) -> str:
+    """Return type, unit, range and default of a parameter."""
     about = ", ".join(part for part in (p.type, p.unit, p.range) if part)
     return f"{about}; default {p.default}" if p.default else about
 
 
-def _sentence(p: Parameter) -> str:
-    return f"`{p.name}` ({_about(p)}): {p.description}"
-
-
-def _summary(kind: Kind) -> str:
+def summary(kind: Kind) -> str:
+    """Return what a kind does, and the keys that it has or needs."""
     remarks = []
     if kind.direction is not None:
         remarks.append(f"Direction: {kind.direction}, if none is given.")
@@ -156,8 +132,3 @@ def _value(value: Any) -> str:
     if isinstance(value, list | tuple):
         return ", ".join(map(str, value))
     return f"{value:g}" if isinstance(value, float) else str(value)
-
-
-if __name__ == "__main__":
-    documentation = Path(sys.argv[1])
-    documentation.write_text(renewed(documentation.read_text(encoding="utf-8")), encoding="utf-8")

@@ -3,14 +3,15 @@
 import json
 
 import pytest
+from fault_tables_page import detections_markdown, false_alarms_markdown
 from scipy.stats import poisson
 from small_campaign import CAMPAIGN, SUMMARY, campaign_file, judged
 
 from gcs.campaign.engine import Campaign
 from gcs.campaign.faults.campaign_file import read_campaign
 from gcs.campaign.faults.cases import CLEAN
-from gcs.campaign.faults.detection_table import DetectionRow, detections, detections_markdown, seconds
-from gcs.campaign.faults.false_alarms import false_alarms, false_alarms_markdown, upper_bound
+from gcs.campaign.faults.detection_table import DetectionRow, detections, seconds
+from gcs.campaign.faults.false_alarms import false_alarms, upper_bound
 from gcs.campaign.faults.judgement import clean_time
 from gcs.campaign.faults.plans import FaultFlights
 from gcs.campaign.faults.sources import (

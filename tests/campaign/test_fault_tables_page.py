@@ -6,21 +6,20 @@ import subprocess
 import tomllib
 from pathlib import Path
 
+import fault_tables_page
 import numpy as np
 import pytest
+from fault_tables_page import DETECTION, FALSE_ALARMS, main
+from page_tables import commit_of, renewed
 from small_campaign import CAMPAIGN, SUMMARY, campaign_file, fly_nothing
 
 from gcs.app import cli
-from gcs.campaign.faults import tables_page
 from gcs.campaign.faults.campaign_file import read_campaign
 from gcs.campaign.faults.detection_table import case_name
 from gcs.campaign.faults.plans import FaultFlights
-from gcs.campaign.faults.tables_page import DETECTION, FALSE_ALARMS, main
-from gcs.campaign.product import commit_of
 from gcs.campaign.result import Flown
 from gcs.campaign.scenarios import field as fields
 from gcs.campaign.scenarios.field import field
-from gcs.campaign.tables import renewed
 from gcs.config import UnusableFile, read_system
 from gcs.errors import GcsError, UnusableInput
 from gcs.mission.model import Mission
@@ -176,7 +175,7 @@ def made(folder, text):
 
 
 def test_command_writes_both_tables_and_flies_what_is_missing(tmp_path, flown, monkeypatch):
-    monkeypatch.setattr(tables_page, "commit_of", lambda folder: "commit 0123abc")
+    monkeypatch.setattr(fault_tables_page, "commit_of", lambda folder: "commit 0123abc")
     row = '[[row]]\nname = "all of them"\nfaults = ["slow", "loss"]\nmedian = 10.0\nworst = 10.0\n'
     code, page = made(tmp_path, CAMPAIGN + row)
     assert code == 0 and len(flown) == 12

@@ -4,6 +4,8 @@ import math
 from dataclasses import replace
 
 import pytest
+from levels_page import COURSES, rows
+from page_tables import markdown_table
 from scenario_results import result_of
 from small_campaign import InThisThread
 
@@ -11,8 +13,6 @@ from gcs.app.cli import main
 from gcs.campaign import engine
 from gcs.campaign.result import Result
 from gcs.campaign.scenarios.levels import contact_bound
-from gcs.campaign.scenarios.levels_page import COURSES, rows
-from gcs.campaign.tables import markdown_table
 
 CLEARANCES = {1: 0.9, 2: 0.4, 3: None, 4: 0.7, 5: 0.5, 6: 0.8}
 """Planned, by the number of the course (m)."""

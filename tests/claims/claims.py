@@ -20,16 +20,15 @@ from collections.abc import Sequence
 from pathlib import Path
 
 HERE = Path(__file__).parent
-sys.path[:0] = [str(HERE), str(HERE.parents[1])]
+sys.path[:0] = [str(HERE), str(HERE.parent / "pages"), str(HERE.parents[1])]
 
 from claims_file import CLASSES, ClaimsError, ClaimsFile, last_digit, read_claims  # noqa: E402
 from documents import Found, found_figures, uncovered  # noqa: E402
+from page_tables import commit_of  # noqa: E402
 from rich.console import Console  # noqa: E402
 from rich.table import Table  # noqa: E402
 from rich.text import Text  # noqa: E402
 from sources import ROOT, Record, Values, cpu_seconds, run  # noqa: E402
-
-from gcs.campaign.product import commit_of  # noqa: E402
 
 FILE, RECORD = ROOT / "docs" / "claims.toml", ROOT / "docs" / "measured.json"
 

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from settings_page import settings_page
 from standing_obstacles import StandingObstacles
 
 from gcs.campaign.toml_text import tables_text
 from gcs.config import SystemConfig, UnusableFile, read_system
 from gcs.config.schema import ListedSetting, listed_settings
-from gcs.config.settings_page import settings_page
 from gcs.errors import UnusableInput
 from gcs.flight import stack
 from idc_controller.control.mpc import ModelPredictiveController

@@ -4,13 +4,14 @@ import dataclasses
 from pathlib import Path
 
 import pytest
+from kinds_page import renewed
 from rich.console import Console
 
 from gcs.app.cli import main
 from gcs.app.fly_options import FlyOptions, prepare
 from gcs.errors import UnusableInput
 from gcs.faults import KINDS, read_settings
-from gcs.faults.listing import parameters, renewed
+from gcs.faults.listing import parameters
 from gcs.faults.suggestions import kind_meant
 from gcs.mission.describe import describe
 from gcs.mission.model import Fault
@@ -198,7 +199,7 @@ def test_every_kind_is_listed_with_its_parameters(capsys, monkeypatch):
 
 def test_documentation_holds_the_table_of_kinds():
     page = (ROOT / "docs" / "faults.md").read_text(encoding="utf-8")
-    assert page == renewed(page), "run python -m gcs.faults.listing docs/faults.md"
+    assert page == renewed(page), "run make docs"
     assert renewed(page.replace("| `payload_mass` | The", "| `mass` | A")) == page
 
 

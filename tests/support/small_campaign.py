@@ -52,7 +52,7 @@ def fly_nothing(monkeypatch, fly):
     """Whatever campaign flies from here on, a flight is ``fly(plan, run_dir)``."""
     monkeypatch.setattr(flight, "fly", fly)
     monkeypatch.setattr("gcs.app.campaigns.WorkerProcesses", InThisThread)
-    monkeypatch.setattr("gcs.campaign.faults.tables_page.WorkerProcesses", InThisThread)
+    monkeypatch.setattr("fault_tables_page.WorkerProcesses", InThisThread)
 
 
 def flown_in(campaign, ended=lambda result: None):

@@ -11,7 +11,6 @@ from pydantic import Field
 from gcs.campaign.faults.cases import Seeds
 from gcs.campaign.faults.sources import ISOLATIONS, NONE
 from gcs.campaign.result import Result
-from gcs.campaign.tables import markdown_table
 from gcs.config.validate import Positive, strict
 from gcs.mission.model import Name
 
@@ -117,25 +116,3 @@ def _codes(group: Sequence[Result]) -> str:
 def seconds(time: float) -> str:
     """Return a time (s) to two digits, and to no more than 0.01 s."""
     return f"{time:.{2 if time < 0.995 else 1 if time < 9.95 else 0}f}"
-
-
-def detections_markdown(rows: Sequence[Detections]) -> str:
-    """Return the rows as a table in Markdown."""
-    return markdown_table([
-        {
-            "fault": row.fault,
-            "true source": row.true_source,
-            "flights": str(row.flights),
-            **{verdict: str(getattr(row, verdict) or "") for verdict in ISOLATIONS},
-            "first alarm": ", ".join(f"`{code}`" for code in row.first_alarms.split(", ") if code),
-            "median": _delay(row.median_s),
-            "worst": _delay(row.worst_s),
-            "latest": _delay(row.latest_s),
-            "named in its place": row.named_wrongly,
-        }
-        for row in rows
-    ])  # fmt: skip
-
-
-def _delay(time: float | None) -> str:
-    return "" if time is None else f"{seconds(time)} s"

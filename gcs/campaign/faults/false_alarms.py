@@ -8,7 +8,6 @@ from scipy.stats import chi2
 
 from gcs.campaign.faults.cases import CLEAN
 from gcs.campaign.result import Result
-from gcs.campaign.tables import markdown_table
 
 CONFIDENCE = 0.95
 ALL = "all"
@@ -59,21 +58,3 @@ def _row(mission: str, group: Sequence[Result]) -> FalseAlarms:
 def upper_bound(events: int, exposure: float) -> float:
     """Return the exact upper bound of a Poisson rate, at :data:`CONFIDENCE`, after ``events`` in ``exposure``."""
     return float(chi2.ppf(CONFIDENCE, 2 * (events + 1)) / 2.0 / exposure) if exposure > 0.0 else float("inf")
-
-
-def false_alarms_markdown(rows: Sequence[FalseAlarms]) -> str:
-    """Return the rows as a table in Markdown."""
-    bound = f"upper {CONFIDENCE:.0%} bound".replace("%", " %")
-    return markdown_table([
-        {
-            "without a fault": row.mission,
-            "flights": str(row.flights) + (f" ({row.not_counted} without a record)" if row.not_counted else ""),
-            "hours": f"{row.hours:.3f}",
-            "false alarms": str(row.alarms),
-            "in flights": str(row.flights_with_alarms),
-            "per hour": f"{row.per_hour:.1f}",
-            bound: f"{row.per_hour_bound:.1f}",
-            "codes": row.codes,
-        }
-        for row in rows
-    ])  # fmt: skip

@@ -1,4 +1,4 @@
-"""``docs/settings.md``, written from the declarations: ``python -m gcs.config.settings_page`` prints it."""
+"""``docs/settings.md``, written from the declarations: ``python tests/pages/settings_page.py`` prints it."""
 
 from itertools import groupby
 from typing import Any

@@ -1,6 +1,6 @@
 """The two tables of ``docs/faults.md``, flown and written by one command.
 
-``python -m gcs.campaign.faults.tables_page docs/faults.md missions/detection.toml missions/false_alarms.toml``
+``python tests/pages/fault_tables_page.py docs/faults.md missions/detection.toml missions/false_alarms.toml``
 """
 
 import argparse
@@ -9,19 +9,19 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from page_tables import commit_of, made_by, markdown_table, renewed
 from rich.console import Console
 
 from gcs.campaign.engine import Campaign
 from gcs.campaign.executors import WorkerProcesses
 from gcs.campaign.faults.campaign_file import read_campaign
-from gcs.campaign.faults.detection_table import Detections, detections_markdown
-from gcs.campaign.faults.false_alarms import false_alarms, false_alarms_markdown
+from gcs.campaign.faults.detection_table import Detections, seconds
+from gcs.campaign.faults.false_alarms import CONFIDENCE, FalseAlarms, false_alarms
 from gcs.campaign.faults.plans import FaultFlights
+from gcs.campaign.faults.sources import ISOLATIONS
 from gcs.campaign.folder import plain
-from gcs.campaign.product import commit_of
 from gcs.campaign.progress import fly_with_progress
 from gcs.campaign.result import Result
-from gcs.campaign.tables import made_by, renewed
 from gcs.errors import GcsError
 
 DETECTION, FALSE_ALARMS = "table of detection", "table of false alarms"
@@ -61,7 +61,7 @@ def main(arguments: Sequence[str]) -> int:
             problems += flights.problems(campaign.results)
             flights.report(campaign.results, out)
         files = " ".join(map(_shown, (options.page, *options.campaigns)))
-        command = f"python -m gcs.campaign.faults.tables_page {files}"
+        command = f"python tests/pages/fault_tables_page.py {files}"
         page = renewed(page, DETECTION, made_by(command, commit, detections_markdown(rows)))
         page = renewed(page, FALSE_ALARMS, made_by(command, commit, false_alarms_markdown(false_alarms(results))))
         options.page.write_text(page, encoding="utf-8")
@@ -73,6 +73,46 @@ def main(arguments: Sequence[str]) -> int:
     for problem in problems:
         console.print(problem, style="red", markup=False)
     return 1 if problems else 0
+
+
+def detections_markdown(rows: Sequence[Detections]) -> str:
+    """Return the rows as a table in Markdown."""
+    return markdown_table([
+        {
+            "fault": row.fault,
+            "true source": row.true_source,
+            "flights": str(row.flights),
+            **{verdict: str(getattr(row, verdict) or "") for verdict in ISOLATIONS},
+            "first alarm": ", ".join(f"`{code}`" for code in row.first_alarms.split(", ") if code),
+            "median": _delay(row.median_s),
+            "worst": _delay(row.worst_s),
+            "latest": _delay(row.latest_s),
+            "named in its place": row.named_wrongly,
+        }
+        for row in rows
+    ])  # fmt: skip
+
+
+def _delay(time: float | None) -> str:
+    return "" if time is None else f"{seconds(time)} s"
+
+
+def false_alarms_markdown(rows: Sequence[FalseAlarms]) -> str:
+    """Return the rows as a table in Markdown."""
+    bound = f"upper {CONFIDENCE:.0%} bound".replace("%", " %")
+    return markdown_table([
+        {
+            "without a fault": row.mission,
+            "flights": str(row.flights) + (f" ({row.not_counted} without a record)" if row.not_counted else ""),
+            "hours": f"{row.hours:.3f}",
+            "false alarms": str(row.alarms),
+            "in flights": str(row.flights_with_alarms),
+            "per hour": f"{row.per_hour:.1f}",
+            bound: f"{row.per_hour_bound:.1f}",
+            "codes": row.codes,
+        }
+        for row in rows
+    ])  # fmt: skip
 
 
 def _shown(path: Path) -> str:

@@ -1,6 +1,6 @@
 """The table of ``docs/courses.md`` of both levels of evidence, flown and written by one command.
 
-``python -m gcs.campaign.scenarios.levels_page docs/courses.md``
+``python tests/pages/levels_page.py docs/courses.md``
 """
 
 import argparse
@@ -9,16 +9,16 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from page_tables import commit_of, made_by, markdown_table, renewed
 from rich.console import Console
 
 from gcs.campaign.engine import Campaign
 from gcs.campaign.executors import WorkerProcesses
-from gcs.campaign.product import commit_of
 from gcs.campaign.result import Result
 from gcs.campaign.scenarios.generator import APPROACHING, KINDS
 from gcs.campaign.scenarios.levels import cost, differences, fly_levels
 from gcs.campaign.scenarios.plans import Scenarios
-from gcs.campaign.tables import extreme, made_by, markdown_table, renewed
+from gcs.campaign.tables import extreme
 
 PLACE = "table of levels"
 COURSES = Scenarios(count=30, seed=3107, kinds=tuple(kind for kind in KINDS if kind != APPROACHING))
@@ -31,12 +31,12 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument("--jobs", type=int, help="parallel flights (default: one per core)")
     parser.add_argument("--out", type=Path, default=Path("runs/levels"), help="folder (default: runs/levels)")
     options = parser.parse_args(arguments)
-    page, commit = options.page.read_text(encoding="utf-8"), commit_of(Path(__file__).parents[2])
+    page, commit = options.page.read_text(encoding="utf-8"), commit_of(Path(__file__).parents[1])
     full = Campaign(COURSES, options.out)
     planning = Campaign(replace(COURSES, planning=True), options.out / "planning")
     with WorkerProcesses(options.jobs) as executor:
         fly_levels(planning, full, None, executor, Console(highlight=False, soft_wrap=True))
-    command = f"python -m {__spec__.name} {options.page}"
+    command = f"python tests/pages/levels_page.py {options.page}"
     table = markdown_table(rows(planning.results, full.results))
     notes = "".join(f"\n- {line}" for line in differences(planning.results, full.results))
     page = renewed(page, PLACE, made_by(command, commit, table + notes))

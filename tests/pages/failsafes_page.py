@@ -1,4 +1,4 @@
-"""Tables of failsafes and alarms for ``docs/failsafes.md``: ``python -m gcs.flight.listing > docs/failsafes.md``."""
+"""``docs/failsafes.md`` from the tables of failsafes and alarms: ``python tests/pages/failsafes_page.py`` prints it."""
 
 from dataclasses import asdict
 
@@ -24,8 +24,8 @@ def listing() -> str:
     )
     return f"""# Failsafes and alarms
 
-This page is made from the code: `python -m gcs.flight.listing > docs/failsafes.md`. Thresholds are those of the default
-settings (`gcs/config/flight_settings.py`).
+This page is made from the code by `make docs`. Thresholds are those of the default settings
+(`gcs/config/flight_settings.py`).
 
 ## Failsafes
 
