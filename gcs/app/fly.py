@@ -41,7 +41,6 @@ from gcs.mission.model import Limits, Mission
 from gcs.mission.targets import targets_of
 from gcs.numerics import differences
 from gcs.record.incomplete import Incomplete, read_line
-from gcs.record.outcome import Outcome
 from gcs.record.recorder import FlightRecorder
 from gcs.record.run_data import RunData, read_run
 from gcs.record.run_folder import SUMMARY, NewRunFolder, UnwritableFile, write_manifest
@@ -199,10 +198,7 @@ def flight_result(
     ended = verdict(records, ground, targets, limits["arrival"], landing_on_record=truth_ends)
     summary = summarise(
         records,
-        completed=ended.outcome is Outcome.COMPLETED,
-        outcome=ended.outcome,
-        reason=ended.reason,
-        arrival=ended.arrival,
+        ended,
         duration_s=duration,
         real_time_factor=duration / wall if wall > 0.0 else None,
         limits=limits,

@@ -10,7 +10,6 @@ from gcs.mission.targets import targets_of
 from gcs.planning.flight import PlanningFlight
 from gcs.record.clearance import ObstacleTrack
 from gcs.record.landing import onsets
-from gcs.record.outcome import Outcome
 from gcs.record.reader import without_rows
 from gcs.record.run_data import RunData
 from gcs.record.run_folder import to_json
@@ -29,10 +28,7 @@ def planned(flight: PlanningFlight) -> RunData:
     limits = mission.limits or Limits()
     ground = GroundReport(True, not reason, True, False, reason, flight.broken_off)
     ended = verdict(run, ground, None if reason else targets_of(mission), limits.arrival)
-    summary: dict[str, Any] = summarise(
-        run, completed=ended.outcome is Outcome.COMPLETED, outcome=ended.outcome, reason=ended.reason,
-        arrival=ended.arrival, duration_s=float(run.time[-1]), real_time_factor=None,
-    )  # fmt: skip
+    summary: dict[str, Any] = summarise(run, ended, duration_s=float(run.time[-1]), real_time_factor=None)
     summary["contacts"] = onsets((run.clearance <= 0.0).astype(float))
     summary["safety"] = {"slack_max_m": round(flight.slack, 6)}
     return run.with_summary(summary)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gcs.record.incomplete import IncompleteRecords
-from gcs.record.tables import HORIZON, HORIZON_COLUMNS, TableWriter
+from gcs.record.tables import HORIZON, HORIZON_COLUMNS, Grid, TableWriter
 
 if TYPE_CHECKING:
     from idc_controller.parameters import SystemParameters
@@ -21,16 +21,15 @@ INTERVAL = 0.2
 """s, between the moments that are recorded."""
 EVERY = 3
 """Stages of the safety filter's horizon from one recorded step to the next."""
-_GRID_TOLERANCE = 1e-6
 _DIGITS = 3  # mm
 
 
-class HorizonRecorder:
+class HorizonRecorder(TableWriter):
     """Writes the payload's path over the safety filter's horizon, and to rest by the stop plan."""
 
     def __init__(self, run_dir: Path, incomplete: IncompleteRecords | None = None) -> None:
-        self._table = TableWriter(run_dir / HORIZON, HORIZON_COLUMNS, incomplete)
-        self._next = -math.inf
+        super().__init__(run_dir / HORIZON, HORIZON_COLUMNS, incomplete)
+        self._grid = Grid(INTERVAL)
 
     def record(
         self, time: float, trajectory: PayloadTrajectory, stop: StopPlan, chain: Chain, parameters: SystemParameters
@@ -44,22 +43,17 @@ class HorizonRecorder:
             chain: stages of the safety filter's horizon.
             parameters: of the system.
         """
-        if time < self._next - _GRID_TOLERANCE:
+        if not self._grid.is_due(time):
             return
-        self._next = (math.floor(time / INTERVAL + _GRID_TOLERANCE) + 1) * INTERVAL
         steps = range(0, chain.stages + 1, EVERY)
         plan = trajectory.derivatives(time + chain.period * np.array(steps), 0)[0]
         to_rest = range(0, math.ceil(stop.duration / chain.period / EVERY) * EVERY + 1, EVERY)
         stopping = stop.payload_positions(parameters, chain.period * np.array(to_rest))
         at = round(time, 6)
-        self._table.write_numbers(
+        self.write_numbers(
             *[
                 (at, kind, step, *place)
                 for kind, stages, path in (("plan", steps, plan), ("stop", to_rest, stopping))
                 for step, place in zip(stages, path.round(_DIGITS).tolist(), strict=True)
             ]
         )
-
-    def close(self) -> None:
-        """Close the table; harmless when it is closed."""
-        self._table.close()

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gcs.record.incomplete import IncompleteRecords
-from gcs.record.tables import INNOVATION_COLUMNS, INNOVATIONS, TableWriter
+from gcs.record.tables import INNOVATION_COLUMNS, INNOVATIONS, Grid, TableWriter
 from idc_controller.estimation.measurements import PAYLOAD, Channel
 
 if TYPE_CHECKING:
@@ -18,22 +18,21 @@ if TYPE_CHECKING:
 
 INTERVAL = 0.1
 """s, between rows."""
-_GRID_TOLERANCE = 1e-6
 _DIGITS = 4
 
 
-class InnovationRecorder:
+class InnovationRecorder(TableWriter):
     """Writes the largest test ratio of each channel since the row before, and the channel's state."""
 
     def __init__(self, run_dir: Path, incomplete: IncompleteRecords | None = None) -> None:
-        self._table = TableWriter(run_dir / INNOVATIONS, INNOVATION_COLUMNS, incomplete)
+        super().__init__(run_dir / INNOVATIONS, INNOVATION_COLUMNS, incomplete)
         self._largest: dict[SensorKey, list[float]] = {}
         """Of pose and motion."""
         self._learnt: dict[SensorKey, float] = {}
         """Time of the last sample of each sensor that counts (s): one that is replayed counts once."""
         self._channels: list[tuple[SensorKey, Channel, str]] = []
         """All, with the name of their source."""
-        self._next = -math.inf
+        self._grid = Grid(INTERVAL)
 
     def record(self, estimator: Estimator, estimate: Estimate, time: float) -> None:
         """Take the tests of an ``estimate``, and write a row for each channel at team ``time`` (s), if it is due."""
@@ -47,13 +46,11 @@ class InnovationRecorder:
                 for part in (0, 1):
                     if not ratios[part] <= known[part]:  # nan: none yet, or not tested
                         known[part] = known[part] if math.isnan(ratios[part]) else ratios[part]
-        if time < self._next - _GRID_TOLERANCE:
-            return
-        self._next = (math.floor(time / INTERVAL + _GRID_TOLERANCE) + 1) * INTERVAL
-        self._write(estimator, time)
-        largest.clear()
+        if self._grid.is_due(time):
+            self._write_states(estimator, time)
+            largest.clear()
 
-    def _write(self, estimator: Estimator, time: float) -> None:
+    def _write_states(self, estimator: Estimator, time: float) -> None:
         self._channels = self._channels or [
             (key, Channel(*key, part), "payload" if key[0] == PAYLOAD else f"vehicle {key[0] + 1}")
             for key in estimator.measurement_model.observations
@@ -66,11 +63,7 @@ class InnovationRecorder:
             ratio = self._largest[key][channel.part] if key in self._largest else math.nan
             state = states.get(channel) if states else None
             rows.append((at, name, channel.name, round(ratio, _DIGITS), state or ("rejected" if ratio > 1.0 else "ok")))
-        self._table.write_numbers(*rows)
-
-    def close(self) -> None:
-        """Close the table; harmless when it is closed."""
-        self._table.close()
+        self.write_numbers(*rows)
 
 
 def _isolated(health: SensorHealth) -> set[Channel]:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gcs.record.incomplete import IncompleteRecords
-from gcs.record.tables import OBSTACLE_ESTIMATE_COLUMNS, STANDING_OBSTACLE_COLUMNS, TableWriter
+from gcs.record.tables import OBSTACLE_ESTIMATE_COLUMNS, STANDING_OBSTACLE_COLUMNS, Grid, TableWriter
 
 if TYPE_CHECKING:
     from idc_controller.arrays import Array
@@ -17,7 +16,6 @@ if TYPE_CHECKING:
 
 INTERVAL, STANDING_INTERVAL = 0.1, 1.0
 """s, between rows of the tracks, and of what stands."""
-_GRID_TOLERANCE = 1e-6
 _NOTHING = (0.0,) * 7
 """Columns of a piece that is no more."""
 
@@ -34,21 +32,19 @@ class ObstacleRecorder:
             )
         )
         self._pieces: dict[str, tuple[Shape, Array]] = {}
-        self._next = self._next_standing = -math.inf
+        self._grid, self._standing_grid = Grid(INTERVAL), Grid(STANDING_INTERVAL)
 
     def record(self, obstacle_map: ObstacleMap, time: float) -> None:
         """Record tracked obstacles at team ``time`` (s), ten times a second, and changes of the standing ones, once."""
-        if time < self._next - _GRID_TOLERANCE:
+        if not self._grid.is_due(time):
             return
-        self._next = _after(time, INTERVAL)
         for track in obstacle_map.confirmed_tracks(time):
             shape, columns = track.shape, track.shape.columns
             self._tracks.write(
                 [round(time, 6), track.name, shape.kind, *track.position.tolist(), *track.velocity.tolist(),
                  columns.radius, *columns.size, columns.yaw, track.growth]
             )  # fmt: skip
-        if time >= self._next_standing - _GRID_TOLERANCE:
-            self._next_standing = _after(time, STANDING_INTERVAL)
+        if self._standing_grid.is_due(time):
             self._record_standing(obstacle_map.seen.pieces, time)
 
     def close(self) -> None:
@@ -67,8 +63,3 @@ class ObstacleRecorder:
         ]
         if rows := [(round(time, 6), *row) for row in (*gone, *changed)]:
             self._standing.write(*rows)
-
-
-def _after(time: float, interval: float) -> float:
-    """Return the first multiple of ``interval`` (s) after ``time`` (s)."""
-    return (math.floor(time / interval + _GRID_TOLERANCE) + 1) * interval

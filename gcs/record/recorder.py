@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import ExitStack, closing
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,17 +15,7 @@ from gcs.record.horizon_recorder import HorizonRecorder
 from gcs.record.incomplete import IncompleteRecords
 from gcs.record.innovation_recorder import InnovationRecorder
 from gcs.record.obstacle_recorder import ObstacleRecorder
-from gcs.record.tables import (
-    ALARM_COLUMNS,
-    ALARMS,
-    ESTIMATE_COLUMNS,
-    PHASE_COLUMNS,
-    PHASES,
-    PLAN_COLUMNS,
-    REFERENCE_COLUMNS,
-    STEP_COLUMNS,
-    TableWriter,
-)
+from gcs.record.tables import ALARMS, COLUMNS, ESTIMATE, GRID_TOLERANCE, PHASES, PLAN, REFERENCE, STEPS, TableWriter
 from gcs.record.tlog import TelemetryLog
 from idc_controller.rotations import quaternion_from_euler
 
@@ -39,13 +29,12 @@ if TYPE_CHECKING:
     from idc_controller.perception.obstacle_map import ObstacleMap
 
 REFERENCE_INTERVAL = 0.02  # s, the grid of truth.csv
-_GRID_TOLERANCE = 1e-6
 _SD_DIGITS = 7
 _SD_ORDER = [*range(3), *range(6, 9), *range(3, 6), *range(9, 15)]
 """Of the columns, in the estimator's order: position, velocity, attitude, rates, force."""
 
 
-class FlightRecorder:
+class FlightRecorder(ExitStack):
     """The ground's records of one flight; a context manager that closes them.
 
     ``incomplete``: what could not be written.
@@ -53,18 +42,17 @@ class FlightRecorder:
 
     def __init__(self, run_dir: Path, start_epoch: float) -> None:
         """``start_epoch``: seconds since 1970 at the ground's time 0, for the telemetry log."""
+        super().__init__()
         self.incomplete = incomplete = IncompleteRecords()
-        self._tlog = TelemetryLog(run_dir / "telemetry.tlog", start_epoch, incomplete)
-        self._reference = TableWriter(run_dir / "reference.csv", REFERENCE_COLUMNS, incomplete)
-        self._estimate = TableWriter(run_dir / "estimate.csv", ESTIMATE_COLUMNS, incomplete)
-        self._steps = TableWriter(run_dir / "steps.csv", STEP_COLUMNS, incomplete)
-        self._alarms = TableWriter(run_dir / ALARMS, ALARM_COLUMNS, incomplete)
-        self._obstacles = ObstacleRecorder(run_dir, incomplete)
-        self._plan = TableWriter(run_dir / "plan.csv", PLAN_COLUMNS, incomplete)
-        self._phases = TableWriter(run_dir / PHASES, PHASE_COLUMNS, incomplete)
+        self._tlog = self.enter_context(TelemetryLog(run_dir / "telemetry.tlog", start_epoch, incomplete))
+        self._reference, self._estimate, self._steps, self._alarms, self._plan, self._phases = (
+            self.enter_context(TableWriter(run_dir / name, COLUMNS[name], incomplete))
+            for name in (REFERENCE, ESTIMATE, STEPS, ALARMS, PLAN, PHASES)
+        )
+        self._obstacles = self.enter_context(closing(ObstacleRecorder(run_dir, incomplete)))
         self._phase: Phase | None = None
-        self._innovations = InnovationRecorder(run_dir, incomplete)
-        self._horizon = HorizonRecorder(run_dir, incomplete)
+        self._innovations = self.enter_context(InnovationRecorder(run_dir, incomplete))
+        self._horizon = self.enter_context(HorizonRecorder(run_dir, incomplete))
         self._next_row: int | None = None
         self.last_time = 0.0
 
@@ -134,31 +122,14 @@ class FlightRecorder:
         if flight.ended:
             return
         if self._next_row is None:
-            self._next_row = math.ceil(flight.takeoff_time / REFERENCE_INTERVAL - _GRID_TOLERANCE)
-        last = math.floor(time / REFERENCE_INTERVAL + _GRID_TOLERANCE)
+            self._next_row = math.ceil(flight.takeoff_time / REFERENCE_INTERVAL - GRID_TOLERANCE)
+        last = math.floor(time / REFERENCE_INTERVAL + GRID_TOLERANCE)
         times = [row * REFERENCE_INTERVAL for row in range(self._next_row, last + 1)]
         if times:
             position, velocity = flight.reference(np.array(times))
             rows = zip(times, position.tolist(), velocity.tolist(), strict=True)
             self._reference.write_numbers(*[[round(t * 1e6) / 1e6, *p, *v] for t, p, v in rows])
             self._next_row = last + 1
-
-    def close(self) -> None:
-        """Close all files; harmless when they are closed."""
-        tables = (
-            self._reference, self._estimate, self._steps, self._alarms, self._phases, self._plan, self._obstacles,
-            self._innovations, self._horizon,
-        )  # fmt: skip
-        for file in (self._tlog, *tables):
-            file.close()
-
-    def __enter__(self) -> FlightRecorder:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
 
 def _standard_deviations(estimate: Estimate) -> Array:

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from gcs.record.arrival import Arrival
 from gcs.record.landing import in_air, landing_figures, onsets
 from gcs.record.outcome import Outcome
 from gcs.record.reader import Table
@@ -14,6 +13,7 @@ from gcs.record.result import LIMITS, result_rows
 from gcs.record.run_data import RunData, position_error
 from gcs.record.run_folder import FORMAT, SUMMARY, write_json
 from gcs.record.safety import safety_figures
+from gcs.record.verdict import Verdict
 from idc_controller.arrays import Array
 from idc_controller.rotations import euler_from_quaternion
 
@@ -29,28 +29,22 @@ _DIGITS = 6  # of a metre, a degree or a millisecond: below what is simulated fa
 
 def summarise(
     run: RunData,
+    ended: Verdict,
     *,
-    completed: bool,
-    outcome: str,
     duration_s: float,
     real_time_factor: float | None,
     limits: Mapping[str, float | None] | None = None,
     obstacles: bool | None = None,
-    reason: str = "",
-    arrival: Arrival | None = None,
 ) -> dict[str, Any]:
     """Return the content of ``summary.json``, from the truth on record or, where there is none, the estimate.
 
-    The caller says how the flight ended (an :class:`Outcome`) and why, and where it arrived (None: it did not come to
-    its end). ``limits`` is the mission's table of that name: ``settle`` (s) and any of :data:`LIMITS` (m, deg, m/s),
+    ``limits`` is the mission's table of that name: ``settle`` (s) and any of :data:`LIMITS` (m, deg, m/s),
     None for no limit. ``obstacles`` says whether the mission has any to keep clear of (None: as on record). Figures
-    that the records do not contain are None. Raises ``ValueError`` for an unknown outcome or limit.
+    that the records do not contain are None. Raises ``ValueError`` for an unknown limit.
     """
-    if outcome not in list(Outcome):
-        raise ValueError(f"outcome {outcome!r} is none of {', '.join(Outcome)}")
     bounds = {name: float(limit) for name, limit in (limits or {}).items() if limit is not None}
     settle = bounds.pop("settle", DEFAULT_SETTLE)
-    if arrival is None:
+    if ended.arrival is None:
         bounds.pop("arrival", None)
     for name in bounds:
         if name not in LIMITS:
@@ -66,7 +60,7 @@ def summarise(
             "clearance": clearance,
             "position_rmse": rmse["total"],
             "payload_tilt_deg": max((angle for angle in tilt.values() if angle is not None), default=None),
-            "arrival": None if arrival is None else arrival.largest,
+            "arrival": None if ended.arrival is None else ended.arrival.largest,
             "uav_separation": separation,
             "touchdown_speed": None if landing is None else landing["speed_mps"],
             "contacts": contacts,
@@ -77,9 +71,9 @@ def summarise(
     summary: dict[str, Any] = _rounded(
         {
             "format": FORMAT,
-            "completed": completed,
-            "outcome": str(outcome),
-            "reason": reason,
+            "completed": ended.outcome is Outcome.COMPLETED,
+            "outcome": str(ended.outcome),
+            "reason": ended.reason,
             "result": rows,
             "source": run.source,
             "duration_s": duration_s,

@@ -2,6 +2,7 @@
 
 import csv
 import io
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -95,6 +96,22 @@ TEXT_COLUMNS = frozenset(
 """Columns of text in any table; all others are of numbers."""
 
 Cell = float | int | bool | str
+GRID_TOLERANCE = 1e-6
+"""s, by which a time may be before its row on a grid of times."""
+
+
+class Grid:
+    """Multiples of an ``interval`` (s), at each of which a row is due once."""
+
+    def __init__(self, interval: float) -> None:
+        self._interval, self._next = interval, -math.inf
+
+    def is_due(self, time: float) -> bool:
+        """Return whether a row is due at ``time`` (s); if so, the next one is at the multiple after it."""
+        if time < self._next - GRID_TOLERANCE:
+            return False
+        self._next = (math.floor(time / self._interval + GRID_TOLERANCE) + 1) * self._interval
+        return True
 
 
 class TableWriter(AppendOnlyFile):

@@ -12,7 +12,7 @@ import numpy as np
 from gcs.mission.targets import Targets
 from gcs.record.arrival import Arrival, arrival
 from gcs.record.landing import TOUCHDOWN_SPEED, UPRIGHT_DEG, is_set_down, landing_figures
-from gcs.record.outcome import Outcome, outcome_of
+from gcs.record.outcome import Outcome
 from gcs.record.run_data import RunData
 
 _SEEN = re.compile(r"\b(?:piece|track) \d")
@@ -57,16 +57,7 @@ def verdict(
     landing = landing_figures(run) if landing_on_record else None
     arrived = arrival(run, targets, tolerance) if ground.completed and targets is not None else None
     missed = "" if arrived is None else str(arrived)
-    # The ground may have lost its link to the vehicles, or be wrong about them.
-    outcome = outcome_of(
-        begun=ground.begun,
-        contacts=bool(run.contacts is not None and run.contacts.any()),
-        on_ground=ground.landed or bool(landing and landing["on_ground"]),
-        set_down=ground.landed if landing is None else is_set_down(landing),
-        interrupted=ground.interrupted,
-        ended_early=bool(ground.reason) or not ground.completed,
-        arrived=not missed,
-    )
+    outcome = _outcome(run, ground, landing, bool(missed))
     first = ""
     match outcome:
         case Outcome.COLLIDED:
@@ -78,6 +69,24 @@ def verdict(
     early = ground.reason + _identified(run, ground)
     reason = "; ".join(part for part in (first, early, missed) if part)
     return Verdict(outcome, "" if outcome is Outcome.COMPLETED else reason or "ended early", arrived)
+
+
+def _outcome(run: RunData, ground: GroundReport, landing: Mapping[str, Any] | None, missed: bool) -> Outcome:
+    """Return how a flight ended; of several that hold, the worst for those on the spot counts."""
+    # The ground may have lost its link to the vehicles, or be wrong about them.
+    on_ground = ground.landed or bool(landing and landing["on_ground"])
+    set_down = ground.landed if landing is None else is_set_down(landing)
+    if run.contacts is not None and run.contacts.any():
+        return Outcome.COLLIDED
+    if ground.begun and not on_ground:
+        return Outcome.LOST
+    if ground.begun and not set_down:
+        return Outcome.FAILED
+    if ground.interrupted:
+        return Outcome.INTERRUPTED
+    if ground.reason or not ground.completed or not ground.begun:
+        return Outcome.ABORTED
+    return Outcome.FAILED if missed else Outcome.COMPLETED
 
 
 def _identified(run: RunData, ground: GroundReport) -> str:

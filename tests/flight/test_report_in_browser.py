@@ -9,10 +9,12 @@ from browser import Browser
 from growing_run import served, write_until
 from recorded_run import BALL, write_plan, write_reference, write_steps, write_truth
 
+from gcs.record.outcome import Outcome
 from gcs.record.run_data import read_run
 from gcs.record.run_folder import open_run_folder, write_json
 from gcs.record.summary import summarise
 from gcs.record.tables import ALARM_COLUMNS, HORIZON_COLUMNS, PHASE_COLUMNS, TableWriter
+from gcs.record.verdict import Verdict
 from gcs.view.campaign_page import write_campaign
 from gcs.view.page import write_report
 
@@ -42,9 +44,8 @@ def folder(tmp_path_factory):
         for time, phase in ((0.0, "connect"), (1.0, "climb"), (2.0, "fly"), (9.0, "land")):
             table.write([time, phase])
     limits = {"settle": 2.0, "clearance": 0.5, "payload_tilt_deg": 5.0}
-    summary = summarise(
-        read_run(folder), completed=True, outcome="completed", duration_s=10.0, real_time_factor=2.0, limits=limits
-    )
+    completed = Verdict(Outcome.COMPLETED, "", None)
+    summary = summarise(read_run(folder), completed, duration_s=10.0, real_time_factor=2.0, limits=limits)
     write_json(folder / "summary.json", {**summary, "alarms": 2})
     return folder
 

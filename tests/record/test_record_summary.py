@@ -20,19 +20,22 @@ from rich.console import Console
 from truth_rows import write_state
 
 from gcs.record import summary as summaries
+from gcs.record.outcome import Outcome
 from gcs.record.run_data import read_run
 from gcs.record.run_folder import FORMAT, open_run_folder, write_manifest
 from gcs.record.summary import within_limits, write_summary
 from gcs.record.summary_table import print_summary
 from gcs.record.tables import ESTIMATE_COLUMNS, TableWriter
+from gcs.record.verdict import Verdict
 from idc_controller.rotations import quaternion_from_euler
 from vehicle_sim.world.truth_log import TruthLog
 
-FLOWN = {"completed": True, "outcome": "completed", "duration_s": 10.0, "real_time_factor": 5.5}
+FLOWN = {"duration_s": 10.0, "real_time_factor": 5.5}
+COMPLETED = Verdict(Outcome.COMPLETED, "", None)
 
 
-def summarise(folder, **options):
-    return summaries.summarise(read_run(folder), **FLOWN | options)
+def summarise(folder, ended=COMPLETED, **options):
+    return summaries.summarise(read_run(folder), ended, **FLOWN | options)
 
 
 def entry(value, limit, held):
@@ -134,8 +137,6 @@ def test_summary_lists_violated_limits(run):
     assert summarise(run, limits=limits, obstacles=True)["limits"]["clearance"] == entry(None, 0.3, False)
     with pytest.raises(ValueError, match="limit 'tilt'"):
         summarise(run, limits={"tilt": 1.0})
-    with pytest.raises(ValueError, match="outcome 'fine'"):
-        summarise(run, outcome="fine")
     text = printed(summary, run, [run / "poster.png"])
     assert "Flight completed, OUTSIDE its limits: 10.0 s, 5.5 times real time" in text
     rows = {line.strip().split("  ")[0]: line.split() for line in text.splitlines() if line}
@@ -185,8 +186,8 @@ def test_summary_uses_estimate_without_truth(folder):
 
 
 def test_flight_without_take_off_has_a_summary(folder):
-    failed = {"completed": False, "outcome": "failed", "real_time_factor": None}
-    summary = summarise(folder, **failed, limits={"payload_tilt_deg": 5.0})
+    failed = Verdict(Outcome.FAILED, "", None)
+    summary = summarise(folder, failed, real_time_factor=None, limits={"payload_tilt_deg": 5.0})
     assert summary["payload_tilt_max_deg"] == {"roll": None, "pitch": None, "yaw": None}
     assert not within_limits(summary)
     write_summary(folder, summary)

@@ -16,11 +16,13 @@ from recorded_run import BALL, write_flight, write_plan, write_reference, write_
 import gcs.view.page as page_module
 from gcs.record.landing import in_air
 from gcs.record.link_figures import link_figures
+from gcs.record.outcome import Outcome
 from gcs.record.run_data import read_run
 from gcs.record.run_folder import open_run_folder, write_json
 from gcs.record.summary import summarise
 from gcs.record.tables import ALARM_COLUMNS, ESTIMATE_COLUMNS, PHASE_COLUMNS, TableWriter
 from gcs.record.tlog import TelemetryLog
+from gcs.record.verdict import Verdict
 from gcs.record.witness import least_clearance
 from gcs.view.page import write_report
 from gcs.view.page_data import QUANTUM, Blob, PageData, command
@@ -106,7 +108,7 @@ def test_witness_points_are_as_far_apart_as_the_summary_says(folder, path, shape
     state = Obstacle("ball", shape, BALL.position_in_world)
     write_truth_of_obstacle(folder, state)
     run = read_run(folder)
-    summary = summarise(run, completed=True, outcome="completed", duration_s=12.0, real_time_factor=None)
+    summary = summarise(run, Verdict(Outcome.COMPLETED, "", None), duration_s=12.0, real_time_factor=None)
     write_json(folder / "summary.json", summary)
     (decoded,) = page_of(write_report(run))
     found = decoded.header["clearance"]
