@@ -9,17 +9,13 @@ import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from datetime import UTC, datetime
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
-from pydantic import TypeAdapter
 
 from gcs.app.arguments import CONTROLLERS
 from gcs.app.flown import Flight, flown
 from gcs.app.in_process import FlightInProcess
 from gcs.app.logs import LOG
-from gcs.app.preflight import preflight
 from gcs.config import read_system
 from gcs.config.overrides import plain, with_settings
 from gcs.config.toml_file import GivenTables
@@ -27,6 +23,7 @@ from gcs.config.validate import UnusableFile
 from gcs.drivers.interrupt import Interrupt
 from gcs.errors import UnusableInput
 from gcs.flight.failsafe import Failsafe
+from gcs.flight.feasibility import preflight
 from gcs.mission.faults import check_faults_of, fault_problems, parameter_problems, read_fault
 from gcs.mission.model import Fault, Limits, Mission
 from gcs.mission.read import read_mission
@@ -153,13 +150,8 @@ def _seed(seed: int) -> int:
     return whole
 
 
-@cache
-def _limits_adapter() -> TypeAdapter[Limits]:
-    return TypeAdapter(Limits)
-
-
 def _limits(limits: Limits | Mapping[str, Any]) -> Limits:
-    return GivenTables(Path("limits"), _limit_table(limits), {}).validated(_limits_adapter())
+    return GivenTables(Path("limits"), _limit_table(limits), {}).validated(Limits)
 
 
 def _limit_table(limits: Limits | Mapping[str, Any]) -> dict[str, Any]:

@@ -46,7 +46,27 @@ class Flight:
     """The folder of the records; None: none was asked for."""
     incomplete: tuple[str, ...]
     """Names of the records that could not be written in full."""
-    _records: Mapping[str, Table]
+    truth: Table
+    """The true motion of payload and UAVs, thrusts and contacts (rows,), at ``rates.truth``."""
+    forces: Table
+    """The true tension of each link (N), at the times of ``truth``; negative: compression, nan: not known."""
+    reference: Table
+    """The payload's reference by the mission, before avoidance (rows,)."""
+    estimate: Table
+    """The estimate of the payload's state and of the force that disturbs it (N), a row a control step.
+
+    With standard deviations, columns ``..._sd``.
+    """
+    innovations: Table
+    """Innovation tests of each channel at 10 Hz: the largest test ratio since the row before, and its state."""
+    plan: Table
+    """The plan of the safety filter, a row a control step in the air."""
+    horizon: Table
+    """The planned path and the stop plan of the payload at 5 Hz, a row a step."""
+    obstacles: Table
+    """True poses of the obstacles: of one that moves at the times of ``truth``, of one that stands once."""
+    alarms: Table
+    """Failsafes and alarms (rows,): ``time_s``, ``source``, ``code``, ``severity``, ``text``."""
     _sent: SentSetpoints
 
     @property
@@ -64,49 +84,6 @@ class Flight:
         """True if it was completed within the limits of the mission."""
         return self.completed and within_limits(self.figures)
 
-    @property
-    def truth(self) -> Table:
-        """The true motion of payload and UAVs, thrusts and contacts (rows,), at ``rates.truth``."""
-        return self._records["truth"]
-
-    @property
-    def forces(self) -> Table:
-        """The true tension of each link (N), at the times of ``truth``; negative: compression, nan: not known."""
-        return self._records["forces"]
-
-    @property
-    def reference(self) -> Table:
-        """The payload's reference by the mission, before avoidance (rows,)."""
-        return self._records["reference"]
-
-    @property
-    def estimate(self) -> Table:
-        """The estimate of the payload's state and of the force that disturbs it (N), a row a control step.
-
-        With standard deviations, columns ``..._sd``.
-        """
-        return self._records["estimate"]
-
-    @property
-    def innovations(self) -> Table:
-        """Innovation tests of each channel at 10 Hz: the largest test ratio since the row before, and its state."""
-        return self._records["innovations"]
-
-    @property
-    def plan(self) -> Table:
-        """The plan of the safety filter, a row a control step in the air."""
-        return self._records["plan"]
-
-    @property
-    def horizon(self) -> Table:
-        """The planned path and the stop plan of the payload at 5 Hz, a row a step."""
-        return self._records["horizon"]
-
-    @property
-    def obstacles(self) -> Table:
-        """True poses of the obstacles: of one that moves at the times of ``truth``, of one that stands once."""
-        return self._records["obstacles"]
-
     @cached_property
     def setpoints(self) -> Table:
         """Set-points as they were sent, a row a vehicle at each time.
@@ -115,11 +92,6 @@ class Flight:
         the largest, 0 to 1).
         """
         return self._sent.table()
-
-    @property
-    def alarms(self) -> Table:
-        """Failsafes and alarms (rows,): ``time_s``, ``source``, ``code``, ``severity``, ``text``."""
-        return self._records["alarms"]
 
     def frame(self, name: str) -> pandas.DataFrame:
         """Return a record as a pandas frame, by the name of its attribute, such as ``"truth"`` or ``"alarms"``.
@@ -153,6 +125,6 @@ def flown(result: FlightResult, sent: SentSetpoints, replay: str, *, keep: bool)
         replay=replay,
         run_dir=result.run_dir if keep else None,
         incomplete=tuple(file.name for file in result.incomplete),
-        _records={name: tables[f"{name}.csv"] for name in _TABLES},
         _sent=sent,
+        **{name: tables[f"{name}.csv"] for name in _TABLES},
     )

@@ -36,17 +36,17 @@ class TomlFile:
 
     def validated(
         self,
-        validator: Validator[T],
+        kind: Validator[T] | type[T],
         data: dict[str, Any] | None = None,
         under: Key = (),
         suggestions: Suggestions | None = None,
     ) -> T:
-        """Return the file's data (or ``data`` in its place, of the same keys below ``under``) as the validator's type.
+        """Return the file's data (or ``data`` in its place, of the same keys below ``under``) as ``kind``.
 
         Raises :class:`UnusableFile` with every unknown key, missing key and wrong value.
         """
         return validated(
-            validator,
+            kind,
             self.data if data is None else data,
             lambda key, reason: self.problem((*under, *key), reason),
             {"folder": self.path.parent},

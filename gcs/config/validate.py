@@ -5,7 +5,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Annotated, Any, Protocol, TypeVar
 
-from pydantic import ConfigDict, Field, ValidationError, with_config
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, with_config
 
 from gcs.errors import UnusableInput
 
@@ -65,18 +65,29 @@ class Suggestions:
         return None
 
 
+_adapters: dict[type[Any], TypeAdapter[Any]] = {}
+
+
+def adapter_of(kind: type[T]) -> TypeAdapter[T]:
+    """Return what reads a ``kind`` of table; made once, which takes long."""
+    if kind not in _adapters:
+        _adapters[kind] = TypeAdapter(kind)
+    return _adapters[kind]
+
+
 def validated(
-    validator: Validator[T],
+    kind: Validator[T] | type[T],
     data: Any,
     problem: Callable[[Key, str], str],
     context: Mapping[str, Any] | None = None,
     suggestions: Suggestions | None = None,
 ) -> T:
-    """Return ``data`` as the validator's type.
+    """Return ``data`` as ``kind``, a type or the validator of one.
 
     ``problem`` makes the line for a key and a reason. Raises :class:`UnusableFile` with every unknown key, missing key
     and wrong value: a line each, and one for a missing key that is there under another name.
     """
+    validator: Validator[T] = adapter_of(kind) if isinstance(kind, type) else kind
     try:
         # Through JSON: strict types, yet arrays become tuples and tables dataclasses. Dates, which JSON does not
         # have, become text and are refused as such.

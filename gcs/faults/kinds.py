@@ -2,11 +2,11 @@
 
 import json
 from collections.abc import Mapping
-from functools import cache
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ValidationError
 
+from gcs.config.validate import adapter_of
 from gcs.errors import UnusableInput
 from gcs.faults import link, sensors, timing, values, world  # noqa: F401 -- each fills the table
 from gcs.faults.kind import KINDS, FaultSettings
@@ -16,13 +16,7 @@ _sorted = sorted(KINDS.items(), key=lambda item: _FAMILIES.index(item[1].family)
 KINDS.clear()
 KINDS.update(_sorted)
 
-__all__ = ["KINDS", "read_settings", "settings_adapter"]
-
-
-@cache
-def settings_adapter(name: str) -> TypeAdapter[FaultSettings]:
-    """Return what reads the parameters of the kind ``name``, which must exist."""
-    return TypeAdapter(KINDS[name].settings)
+__all__ = ["KINDS", "read_settings"]
 
 
 def read_settings(name: str, settings: Mapping[str, Any]) -> FaultSettings:
@@ -30,7 +24,8 @@ def read_settings(name: str, settings: Mapping[str, Any]) -> FaultSettings:
     if name not in KINDS:
         raise UnusableInput(f"fault: there is no kind '{name}'")
     try:
-        return settings_adapter(name).validate_json(json.dumps(dict(settings), default=str), strict=True)
+        text = json.dumps(dict(settings), default=str)
+        return adapter_of(KINDS[name].settings).validate_json(text, strict=True)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         where = ".".join(str(part) for part in first["loc"])

@@ -9,8 +9,8 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from gcs.config.validate import adapter_of
 from gcs.faults.kind import KINDS, Kind
-from gcs.faults.kinds import settings_adapter
 from gcs.faults.values import ValueFault
 
 _SHARED = tuple(field.name for field in fields(ValueFault))
@@ -30,7 +30,7 @@ class Parameter:
 
 def parameters(kind: Kind) -> list[Parameter]:
     """Return the parameters of a kind, in the order of its dataclass."""
-    schema = settings_adapter(kind.name).json_schema()
+    schema = adapter_of(kind.settings).json_schema()
     definitions = schema.get("$defs", {})
     required = schema.get("required", [])
     found = []

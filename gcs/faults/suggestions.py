@@ -5,8 +5,8 @@ from difflib import SequenceMatcher
 from functools import cache
 from typing import Any
 
-from gcs.faults.kind import KINDS
-from gcs.faults.kinds import settings_adapter
+from gcs.config.validate import adapter_of
+from gcs.faults.kinds import KINDS
 
 _WORD_ALIKE = 0.65
 _ALIKE = 0.85
@@ -55,7 +55,7 @@ def _entries(kind: str) -> Mapping[str, Any]:
     """Return the schema of each parameter of ``kind``; none of a kind that does not exist."""
     if kind not in KINDS:
         return {}
-    entries: Mapping[str, Any] = settings_adapter(kind).json_schema().get("properties", {})
+    entries: Mapping[str, Any] = adapter_of(KINDS[kind].settings).json_schema().get("properties", {})
     return entries
 
 

@@ -14,10 +14,21 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from gcs.config.validate import UnusableFile
 from gcs.errors import UnusableInput
 from gcs.mission.model import Limits, Lissajous, Mission, Obstacle
+from gcs.mission.plausibility import implausible
 from gcs.mission.route import Circle, HoldForever, Land, Leg, Position, Route, TakeOff
-from gcs.mission.route_clearance import SPACING, TRIED_LEGS, circle_places, curve_places, free_space, keeps_margin
+from gcs.mission.route_clearance import (
+    SPACING,
+    TRIED_LEGS,
+    circle_places,
+    curve_places,
+    free_space,
+    is_clear,
+    keeps_margin,
+    standing_obstacles,
+)
 from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
 from idc_controller.geometry.bounding_cylinder import BoundingCylinder
@@ -49,9 +60,19 @@ class Feasibility:
         return [*self.ways, *self.notes]
 
 
-def feasibility(mission: Mission, standing: Sequence[Obstacle]) -> Feasibility:
-    """Return whether ``mission`` can be flown past what is ``standing``, as far as that is known before the flight."""
-    return _Check(mission, standing).run()
+def preflight(mission: Mission) -> Feasibility:
+    """Return what is in the way of ``mission``, as far as that is known before the flight.
+
+    Raises :class:`UnusableInput` if it cannot be flown.
+    """
+    check_curve(mission)
+    notes = implausible(mission)
+    standing = standing_obstacles(mission)
+    found = Feasibility() if is_clear(mission, standing) else _Check(mission, standing).run()
+    if found.problems:
+        raise UnusableFile([f"{mission.path}: {problem}" for problem in found.problems])
+    found.notes += notes
+    return found
 
 
 def check_curve(mission: Mission) -> None:

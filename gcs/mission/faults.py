@@ -1,10 +1,7 @@
 """Faults of a mission: read from their tables, and checked against their kinds and the team that flies."""
 
 from collections.abc import Collection, Iterator, Mapping
-from functools import cache
 from typing import Any
-
-from pydantic import TypeAdapter
 
 from gcs.config import SystemConfig, UnusableFile
 from gcs.config.toml_file import TomlFile
@@ -50,20 +47,15 @@ def read_fault(file: TomlFile, index: int, table: Mapping[str, Any]) -> Fault:
     Raises :class:`UnusableFile` for unknown kinds and keys and for wrong values; whether the fault agrees with itself
     and with a system, :func:`fault_problems` checks.
     """
-    fault = file.validated(_adapter(), fault_data(file, index, table), ("fault", index), FaultSuggestions())
+    fault = file.validated(Fault, fault_data(file, index, table), ("fault", index), FaultSuggestions())
     if problems := parameter_problems(file, index, fault):
         raise UnusableFile(problems)
     return fault
 
 
-@cache
-def _adapter() -> TypeAdapter[Fault]:
-    return TypeAdapter(Fault)
-
-
 def parameter_problems(file: TomlFile, index: int, fault: Fault) -> list[str]:
     """Return every reason against the kind of the file's fault ``index`` and its parameters."""
-    from gcs.faults import KINDS, settings_adapter  # the kinds take long to import, spent only where there are faults
+    from gcs.faults import KINDS  # the kinds take long to import, spent only where there are faults
 
     if fault.kind not in KINDS:
         from gcs.faults.suggestions import kind_meant
@@ -74,7 +66,7 @@ def parameter_problems(file: TomlFile, index: int, fault: Fault) -> list[str]:
     try:
         given = (key for key in _KEYS if getattr(fault, key) is not None)
         suggestions = FaultSuggestions(fault.kind, {*given})
-        file.validated(settings_adapter(fault.kind), dict(fault.settings), ("fault", index), suggestions)
+        file.validated(KINDS[fault.kind].settings, dict(fault.settings), ("fault", index), suggestions)
     except UnusableFile as error:
         return list(error.reasons)
     return []

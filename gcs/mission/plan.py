@@ -11,7 +11,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, TypeAdapter
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
 from gcs.config.text_file import why_unparsed
 from gcs.config.validate import Key, UnusableFile, dotted, shown, validated
@@ -173,7 +173,7 @@ def read_plan(path: Path, text: str) -> WaypointFile:
             return f"{path}: {': '.join(places)}: {reason}"
         return f"{path}: {dotted(key)}: {reason}"
 
-    plan = validated(TypeAdapter(_Plan), _parse(path, text), problem)
+    plan = validated(_Plan, _parse(path, text), problem)
     items = list(islice(_simple_items(plan.mission), ITEM_LIMIT + 1))
     problems = []
     if reason := nothing_to_fly(items):

@@ -3,12 +3,11 @@
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
-from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import Field, TypeAdapter
+from pydantic import Field
 
 from gcs.config import UnusableFile
 from gcs.config.system import SystemConfig
@@ -69,11 +68,6 @@ _OTHER_FILES = {
 }
 
 
-@cache
-def _adapter() -> TypeAdapter[MissionFile]:
-    return TypeAdapter(MissionFile)
-
-
 def read_mission_file(path: Path) -> tuple[TomlFile, MissionFile]:
     """Read and check the tables of a mission, without the files it names.
 
@@ -86,7 +80,7 @@ def read_mission_file(path: Path) -> tuple[TomlFile, MissionFile]:
             raise UnusableFile([file.problem((table,), use)])
     if isinstance(faults, list):
         data = {**data, "fault": [fault_data(file, i, fault) for i, fault in enumerate(faults)]}
-    mission = file.validated(_adapter(), data, suggestions=FaultSuggestions())
+    mission = file.validated(MissionFile, data, suggestions=FaultSuggestions())
     problems = [problem for i, fault in enumerate(mission.fault) for problem in parameter_problems(file, i, fault)]
     if problems := [*problems, *_disagreements(file, mission)]:
         raise UnusableFile(problems)

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from gcs.app.cli import main
-from gcs.app.preflight import preflight
 from gcs.campaign.scenarios.generator import KINDS, generate
 from gcs.errors import UnusableInput
+from gcs.flight.feasibility import preflight
 from gcs.mission.read import read_mission
 
 MISSION = """

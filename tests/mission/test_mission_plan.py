@@ -22,7 +22,7 @@ from mission_files import (
     survey,
 )
 
-from gcs.app.preflight import preflight
+from gcs.flight.feasibility import preflight
 from gcs.mission.plan import read_plan
 from gcs.mission.route import FlyTo
 from idc_controller.geometry.box import Wall

@@ -33,7 +33,7 @@ def run(arguments: argparse.Namespace) -> int:
         from rich.console import Console
 
         from gcs.app.fly_options import read_mission_for
-        from gcs.app.preflight import preflight
+        from gcs.flight.feasibility import preflight
         from gcs.mission.describe import describe
 
     try:

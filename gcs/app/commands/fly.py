@@ -4,6 +4,7 @@ import argparse
 import json
 import sys
 from contextlib import ExitStack
+from dataclasses import fields
 from pathlib import Path
 
 from gcs.app.arguments import CONTROLLERS, SEED, SPEED, add_system_arguments
@@ -63,29 +64,19 @@ def run(arguments: argparse.Namespace) -> int:
         *connect, mission_file = connect  # no URL: it only stands behind the option
     if mission_file is None:
         raise UnusableInput("gcs fly: the following arguments are required: MISSION")
-    options = FlyOptions(
-        mission=Path(mission_file),
-        config=arguments.config,
-        settings=arguments.settings,
-        vehicles=arguments.vehicles,
-        seed=arguments.seed,
-        run_dir=arguments.run_dir,
-        realtime=arguments.realtime,
-        speed=arguments.speed,
-        view=arguments.view,
-        controller=arguments.controller,
-        connect=None if connect is None else tuple(parse_url(url) for url in connect),
-    )
+    arguments.mission = Path(mission_file)
+    arguments.connect = None if connect is None else tuple(parse_url(url) for url in connect)
+    options = FlyOptions(**{field.name: getattr(arguments, field.name) for field in fields(FlyOptions)})
     mission = prepare(options)
     # Only now: what cannot be flown is said at once.
     with importing():
         from rich.console import Console
 
         from gcs.app.fly import fly
-        from gcs.app.preflight import preflight
         from gcs.app.progress import FlightProgress
         from gcs.drivers.forked_program import ForkedProgram
         from gcs.drivers.simulator import PROGRAM
+        from gcs.flight.feasibility import preflight
         from gcs.record.incomplete import in_one_line
         from gcs.record.summary_table import print_summary
     # With --json standard output is the summary and nothing else.

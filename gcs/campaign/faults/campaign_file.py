@@ -3,11 +3,10 @@
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, TypeAdapter
+from pydantic import Field
 
 from gcs.campaign.faults.base_mission import BaseMission, read_base
 from gcs.campaign.faults.cases import CLEAN, Case, Seeds, SweptFault, label
@@ -85,11 +84,6 @@ class CampaignFile:
         return row_of(self.rows, case.name, case.severity).seeds or self.seeds
 
 
-@cache
-def _adapter() -> TypeAdapter[CampaignTables]:
-    return TypeAdapter(CampaignTables)
-
-
 def read_campaign(path: Path) -> CampaignFile:
     """Read a campaign with its missions; ``path`` may be the name of one of the package's own.
 
@@ -108,7 +102,7 @@ def read_campaign(path: Path) -> CampaignFile:
         ]
     elif raw is not None:
         data["fault"] = raw
-    tables = file.validated(_adapter(), data)
+    tables = file.validated(CampaignTables, data)
     problems = [*_disagreements(file, tables)]
     cases, bad = _cases(file, tables)
     problems += bad

@@ -23,46 +23,20 @@ _PARTS_OF_KINDS = {
 }
 _PARTS_OF_FAMILIES = {"link": LINK, "timing": CLOCK, "values": NAVIGATION, "sensors": NAVIGATION, "world": FORCE}
 
-NAMED_PARTS: dict[str, tuple[str, ...]] = {
-    "telemetry_timeout": (LINK, NAVIGATION),
-    "range_sensor_failed": (RANGE_SENSOR,),
-    "range_sensor_silent": (RANGE_SENSOR,),
-    "range_sensor_displaced": (RANGE_SENSOR,),
-    "link_latency": (LINK,),
-    "link_jitter": (LINK,),
-    "link_congestion": (LINK,),
-    "clock_error": (CLOCK,),
-    "messages_lost": (LINK,),
-    "messages_reordered": (LINK,),
-    "messages_duplicated": (LINK,),
-    "messages_corrupted": (LINK,),
-    "values_not_finite": (NAVIGATION, RANGE_SENSOR),
-    "setpoints_lost": (LINK,),
-    "id_swap": (SYSTEM_ID,),
-    "stuck_sensor": (NAVIGATION,),
-    "channel_isolated": (NAVIGATION,),
-    "inconsistent_state": (NAVIGATION,),
-    "measurements_rejected": (NAVIGATION,),
-    "innovation_bias": (NAVIGATION,),
-    "innovation_noise": (NAVIGATION,),
-    "sensor_noise": (NAVIGATION,),
-    "covariance_reset": (FORCE,),
-    "disturbance_force": (FORCE,),
-    "process_noise": (FORCE,),
-    "plan_deviation_exceeded": (FORCE,),
-    "vehicle_map_offset": (NAVIGATION, RANGE_SENSOR),
-    # failsafes
-    "duplicate_system_id": (SYSTEM_ID,),
-    "states_unknown": (NAVIGATION,),
-    "all_telemetry_lost": (LINK,),
-    "telemetry_lost": (LINK,),
-    "link_latency_exceeded": (LINK,),
-    "link_unfit": (LINK,),
-    "offboard_left": (LINK,),
-    "telemetry_incomplete": (NAVIGATION,),
-    "obstacle_sensing_lost": (RANGE_SENSOR,),
-    "map_offset": (NAVIGATION, RANGE_SENSOR),
+_CODES: dict[tuple[str, ...], str] = {
+    (LINK,): "link_latency link_jitter link_congestion messages_lost messages_reordered messages_duplicated "
+    "messages_corrupted setpoints_lost all_telemetry_lost telemetry_lost link_latency_exceeded link_unfit "
+    "offboard_left",
+    (CLOCK,): "clock_error",
+    (NAVIGATION,): "stuck_sensor channel_isolated inconsistent_state measurements_rejected innovation_bias "
+    "innovation_noise sensor_noise states_unknown telemetry_incomplete",
+    (RANGE_SENSOR,): "range_sensor_failed range_sensor_silent range_sensor_displaced obstacle_sensing_lost",
+    (SYSTEM_ID,): "id_swap duplicate_system_id",
+    (FORCE,): "covariance_reset disturbance_force process_noise plan_deviation_exceeded",
+    (LINK, NAVIGATION): "telemetry_timeout",
+    (NAVIGATION, RANGE_SENSOR): "values_not_finite vehicle_map_offset map_offset",
 }
+NAMED_PARTS = {code: parts for parts, codes in _CODES.items() for code in codes.split()}
 """Parts that the code of an alarm names, by what it says to check; other codes name none."""
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
-from pydantic import Field, TypeAdapter
+from pydantic import Field
 
 from gcs.campaign.folder import digest, plain
 from gcs.campaign.scenarios.generator import HELD_TO
@@ -146,7 +146,7 @@ def _test(file: YamlFile) -> tuple[_Test, _Keys]:
             return file.problem((*keys.obstacle(key[1]), *key[2:]), reason)
         return file.problem(("simulation", *key), reason)
 
-    return validated(TypeAdapter(_Test), data, problem), keys
+    return validated(_Test, data, problem), keys
 
 
 def _table(file: YamlFile, key: str) -> dict[str, Any]:

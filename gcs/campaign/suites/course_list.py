@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import Field, TypeAdapter
+from pydantic import Field
 
 from gcs.campaign.scenarios.generator import HELD_TO
 from gcs.campaign.scenarios.passage import passage_comments
@@ -71,20 +71,19 @@ def read_list(path: Path, system: SystemConfig, speed: float, seed: int) -> Iter
 
     Raises :class:`UnusableFile` with every reason found in a line.
     """
-    adapter = TypeAdapter(_Line)
     for number, text in enumerate(read_text(path).split("\n"), start=1):
         if text.strip():
-            yield _course(path, number, _read(f"{path}: line {number}", text, adapter), system, speed, seed)
+            yield _course(path, number, _read(f"{path}: line {number}", text), system, speed, seed)
 
 
-def _read(where: str, text: str, adapter: TypeAdapter[_Line]) -> _Line:
+def _read(where: str, text: str) -> _Line:
     try:
         data = json.loads(text)
     except (ValueError, RecursionError) as error:
         raise UnusableFile([f"{where}: not valid JSON: {why_unparsed(error)}"]) from error
     if not isinstance(data, dict):
         raise UnusableFile([f"{where}: must be a JSON object"])
-    return validated(adapter, data, lambda key, reason: f"{where}: {dotted(key)}: {reason}")
+    return validated(_Line, data, lambda key, reason: f"{where}: {dotted(key)}: {reason}")
 
 
 def _course(path: Path, number: int, line: _Line, system: SystemConfig, speed: float, seed: int) -> Course:
