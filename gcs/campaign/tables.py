@@ -2,7 +2,6 @@
 
 import csv
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
@@ -30,16 +29,16 @@ def write_csv(path: Path, columns: Sequence[str], rows: Iterable[Mapping[str, An
     return path
 
 
-def write_records(path: Path, kind: type[Any], records: Iterable[Any], decimals: str = "") -> Path:
-    """Write dataclasses of one ``kind`` as a CSV file, floats in the format ``decimals``.
+def write_records(path: Path, records: Sequence[Mapping[str, Any]], decimals: str = "") -> Path:
+    """Write rows, one at least, as a CSV file, floats in the format ``decimals``.
 
     Raises :class:`UnusableInput` where it cannot.
     """
     rows = (
-        {name: format(value, decimals) if isinstance(value, float) else value for name, value in asdict(record).items()}
+        {name: format(value, decimals) if isinstance(value, float) else value for name, value in record.items()}
         for record in records
     )
-    return write_csv(path, [field.name for field in fields(kind)], rows)
+    return write_csv(path, [*records[0]], rows)
 
 
 def write_results(out: Path, columns: Sequence[str], results: Sequence[Result]) -> list[Path]:

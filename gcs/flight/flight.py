@@ -17,7 +17,7 @@ from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import CONTROLLED, IN_AIR, Phase
 from gcs.flight.plan_monitor import PlanMonitor
 from gcs.flight.preflight import Preflight
-from gcs.flight.spool import SpoolDown, Touchdown, spool_up_share
+from gcs.flight.spool import Touchdown
 from gcs.flight.team import Team
 from gcs.mission.model import Mission
 from idc_controller.arrays import Array
@@ -269,11 +269,11 @@ class Flight:
     def _thrust_share(self, time: float, estimate: Estimate) -> float:
         """Return the share of the thrust that carries payload and vehicles."""
         if self.phase is Phase.SPOOL_UP:
-            return spool_up_share(time - self.takeoff_time, self._settings.takeoff_landing)
+            return min((time - self.takeoff_time) / self._settings.takeoff_landing.spool_up_time, 1.0)
         if self._touchdown is None:
             return 1.0
         lean = float(np.abs(estimate.x[self.control.controller.layout.s]).max())
-        return self._touchdown.spool_down.share(time, lean)
+        return self._touchdown.share(time, lean)
 
     def _progress(self, time: float) -> tuple[float, Trajectory]:
         """Return the progress along the mission trajectory (s), and that."""
@@ -302,7 +302,8 @@ class Flight:
         self._touchdown = Touchdown(
             RestTrajectory(estimate.x[layout.r_0], time),
             float(estimate.x[layout.Theta][2]),
-            SpoolDown(time, self._settings.takeoff_landing),
+            time,
+            self._settings.takeoff_landing,
         )
         self.control.estimator.setpoints.add(estimate.time, None)
         self.phase = Phase.SPOOL_DOWN

@@ -1,20 +1,15 @@
-"""Share of the hover thrust while the payload is on the ground: spool-up before the climb, spool-down after landing."""
+"""The payload on the ground after the flight, while the thrust fades."""
 
-from dataclasses import dataclass
-
-from gcs.config.flight_settings import DEFAULTS, TakeoffLandingSettings
+from gcs.config.flight_settings import TakeoffLandingSettings
 from idc_controller.trajectory.trajectory import Trajectory
 
 
-def spool_up_share(elapsed: float, settings: TakeoffLandingSettings = DEFAULTS.takeoff_landing) -> float:
-    """Return the share of the hover thrust ``elapsed`` (s) after the rotors have started."""
-    return min(elapsed / settings.spool_up_time, 1.0)
+class Touchdown:
+    """The payload at rest where it touched down, and the spool-down, which waits until leaning links are upright."""
 
-
-class SpoolDown:
-    """Spool-down from ``time`` (s) of the touchdown; it waits until links that lean in the wind are upright."""
-
-    def __init__(self, time: float, settings: TakeoffLandingSettings = DEFAULTS.takeoff_landing) -> None:
+    def __init__(self, trajectory: Trajectory, yaw: float, time: float, settings: TakeoffLandingSettings) -> None:
+        """``trajectory``: rest where it touched down at ``time`` (s); ``yaw`` in rad."""
+        self.trajectory, self.yaw = trajectory, yaw
         self._since, self._settings = time, settings
         self._leaning = True
 
@@ -27,14 +22,3 @@ class SpoolDown:
                 return share
             self._leaning, self._since = False, time - (1.0 - s.standing_share) * s.spool_down_time
         return max(1.0 - (time - self._since) / s.spool_down_time, 0.0)
-
-
-@dataclass(frozen=True, eq=False)
-class Touchdown:
-    """The payload on the ground after the flight."""
-
-    trajectory: Trajectory
-    """Rest where it touched down."""
-    yaw: float
-    """rad"""
-    spool_down: SpoolDown

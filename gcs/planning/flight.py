@@ -13,9 +13,8 @@ import numpy as np
 from gcs.flight import stack
 from gcs.flight.mission_trajectory import MissionTrajectory
 from gcs.mission.model import Mission
-from gcs.planning.scanned_map import ScannedMap
+from gcs.planning.scanned_map import ScannedMap, TeamSensors
 from gcs.planning.schedule import LONGEST, PAD_OFFSET
-from gcs.planning.sensors import TeamSensors
 from idc_controller.arrays import Array
 from idc_controller.control.planning import plan
 from idc_controller.estimation.estimate import Estimate

@@ -8,14 +8,14 @@ from mission_files import MISSIONS
 
 from gcs.campaign.flight import FlightPlan
 from gcs.campaign.scenarios.passage import Passage
-from gcs.campaign.scenarios.planning import fly_planning
+from gcs.campaign.scenarios.plans import fly_planning
 from gcs.config.overrides import with_settings
 from gcs.mission.model import Limits
 from gcs.mission.read import read_mission
 from gcs.planning.flight import PlanningFlight
 from gcs.planning.outcome import planned
+from gcs.planning.scanned_map import open_sensors
 from gcs.planning.schedule import Schedule
-from gcs.planning.sensors import open_sensors
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.safety.constraints.exponential_barrier import ExponentialBarrier
 

@@ -1,26 +1,28 @@
-"""Spool-up and spool-down: the thrust fades once no link leans any more."""
+"""Spool-down: the thrust fades once no link leans any more."""
 
+import numpy as np
 import pytest
 
 from gcs.config.flight_settings import DEFAULTS
-from gcs.flight.spool import SpoolDown, spool_up_share
+from gcs.flight.spool import Touchdown
+from idc_controller.trajectory.trajectory import RestTrajectory
 
 S = DEFAULTS.takeoff_landing
 
 
-def test_spool_up_grows_to_the_hover_thrust():
-    assert [spool_up_share(S.spool_up_time * part) for part in (0.0, 0.5, 2.0)] == pytest.approx([0.0, 0.5, 1.0])
+def touchdown():
+    return Touchdown(RestTrajectory(np.zeros(3), 10.0), 0.0, 10.0, S)
 
 
 def test_spool_down_begins_at_once_with_upright_links():
-    spool = SpoolDown(10.0)
+    spool = touchdown()
     for k in range(50):
         elapsed = 0.05 * k
         assert spool.share(10.0 + elapsed, 0.0) == pytest.approx(max(1.0 - elapsed / S.spool_down_time, 0.0), abs=0.03)
 
 
 def test_spool_down_waits_for_leaning_links():
-    spool = SpoolDown(10.0)
+    spool = touchdown()
     for k in range(30):
         assert spool.share(10.0 + 0.1 * k, 2.0 * S.upright_lean) >= S.standing_share
     assert spool.share(13.0, 0.5 * S.upright_lean) == pytest.approx(S.standing_share)
@@ -30,6 +32,6 @@ def test_spool_down_waits_for_leaning_links():
 
 
 def test_spool_down_waits_for_links_until_its_timeout():
-    spool = SpoolDown(10.0)
+    spool = touchdown()
     assert spool.share(10.0 + S.upright_timeout + 0.05, 1.0) == pytest.approx(S.standing_share)
     assert spool.share(10.0 + S.upright_timeout + S.spool_down_time + 0.05, 1.0) == 0.0

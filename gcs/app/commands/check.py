@@ -20,7 +20,6 @@ DESCRIPTION = "Reads a mission and says what will be flown, or every reason why 
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     parser.add_argument("mission", type=Path, metavar="MISSION", help="mission file, or a name of gcs missions")
     add_system_arguments(parser)
     parser.add_argument("--json", action="store_true", help="print legs, notes and reasons as JSON")
@@ -28,7 +27,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the command, and return its exit status."""
     with importing():
         from rich.console import Console
 

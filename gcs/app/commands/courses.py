@@ -44,7 +44,6 @@ PLANNING, FULL, BOTH = LEVELS = ("planning", "full", "both")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     add = parser.add_argument
     add("--count", type=partial(whole_number, least=1, most=9999), metavar="N",
         help=f"number of random scenarios (default: {COUNT})")  # fmt: skip
@@ -74,7 +73,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the command, and return its exit status."""
     if arguments.level != FULL and arguments.controller != "idc":
         raise UnusableInput(f"--level {arguments.level}: the controller {arguments.controller} plans nothing")
     if arguments.level != BOTH and arguments.budget is not None:

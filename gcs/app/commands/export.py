@@ -15,14 +15,12 @@ Writes a run in the formats of other tools, one file for each vehicle (vehicle_1
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     parser.add_argument("run_dir", type=Path, metavar="RUN_DIR", help="a run folder")
     parser.add_argument("--ulog", action="store_true", help="ULog files with PX4's topics")
     parser.add_argument("--tlog", action="store_true", help="telemetry logs of each system")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the command, and return its exit status."""
     if not (arguments.ulog or arguments.tlog):
         raise UnusableInput("gcs export: no format: --ulog, --tlog, or both")
     with importing():

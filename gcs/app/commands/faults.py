@@ -27,7 +27,6 @@ Exit status: 0 all passed (by default: within their limits); 1 not all; 2 unusab
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     parser.add_argument(
         "campaign", nargs="?", type=Path, metavar="CAMPAIGN",
         help="campaign file (docs/faults.md), or a name of gcs missions",
@@ -38,7 +37,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the command, and return its exit status."""
     if arguments.kinds and arguments.campaign is not None:
         raise UnusableInput(
             f"gcs faults: --kinds lists the kinds of fault and flies nothing: leave {arguments.campaign} out"

@@ -27,7 +27,6 @@ def _size(text: str) -> tuple[int, int]:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     add = parser.add_argument
     add("run_dir", type=Path, metavar="RUN_DIR", help="a run folder")
     add("--out", type=Path, metavar="FILE", help="the film (default: film.mp4 in the run folder)")
@@ -44,7 +43,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the command, and return its exit status."""
     with importing():
         from gcs.record.run_data import read_run
         from gcs.view.film import FilmSettings, write_film

@@ -32,7 +32,6 @@ are incomplete; 130 interrupted, vehicles landed.
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     add = parser.add_argument
     add("mission", nargs="?", metavar="MISSION", help="mission file, or a name of gcs missions")
     add("--realtime", action="store_true", help="run on the wall clock instead of in lockstep")
@@ -55,7 +54,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the command, and return its exit status."""
     with importing():
         from gcs.app.fly_options import FlyOptions, prepare
 

@@ -12,11 +12,10 @@ Lists the missions and campaigns that come with the package; `gcs fly`, `gcs che
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The command has no arguments."""
+    pass
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the command, and return its exit status."""
     for table, title in (("mission", "missions, gcs fly NAME:"), ("campaign", "campaigns of faults, gcs faults NAME:")):
         print(title)
         for name, path in own_files(table).items():

@@ -14,13 +14,11 @@ the first one's folder; of a campaign's folder one of all its flights, the worst
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     parser.add_argument("run_dir", type=Path, metavar="RUN_DIR", help="the folder of a run, or of a campaign")
     parser.add_argument("other", type=Path, nargs="?", metavar="OTHER", help="a second one, which is compared with it")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the command, and return its exit status."""
     with importing():
         from gcs.record.run_data import read_run
         from gcs.view.campaign_page import is_campaign, write_campaign

@@ -43,7 +43,6 @@ SHOWN = ("printed", "project")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command."""
     parser.add_argument("--quick", action="store_true", help="within a minute: shorter, without the flights")
     parser.add_argument(
         "--out", type=Path, default=Path("reproduction"), metavar="DIR",
@@ -59,7 +58,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the command, and return its exit status."""
     if arguments.quick and arguments.missions is not None:
         raise UnusableInput("gcs reproduce: --quick flies no missions: leave --missions out")
     chosen, out, missions = plan(arguments.quick), arguments.out, arguments.missions or own_folder()

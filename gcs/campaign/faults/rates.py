@@ -1,7 +1,7 @@
 """The rates of success of a campaign of faults, with their confidence intervals."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import Any
 
 from scipy.stats import binomtest
 
@@ -11,45 +11,24 @@ from gcs.campaign.result import Result
 CONFIDENCE = 0.95
 
 
-@dataclass(frozen=True)
-class Rates:
-    """Counts of all flights with one fault at one severity, and rates with the ends of their Wilson intervals.
+def rates_of(results: Sequence[Result]) -> list[dict[str, Any]]:
+    """Return a row for each fault and severity that was flown, in the order of the results.
 
-    ``safe``: set down without contact, in any phase.
+    Of all flights, of those within their limits and of those that were ``safe``, set down without contact in any phase,
+    the number; of these the rates, too, with the ends ``low`` and ``high`` of their Wilson intervals.
     """
-
-    fault: str
-    kind: str
-    level: int
-    severity: str
-    flights: int
-    within_limits: int
-    within_limits_rate: float
-    within_limits_low: float
-    within_limits_high: float
-    safe: int
-    safe_rate: float
-    safe_low: float
-    safe_high: float
-
-
-def rates_of(results: Sequence[Result]) -> list[Rates]:
-    """Return the rates of each fault and severity that was flown, in the order of the results."""
     groups: dict[tuple[str, int], list[Result]] = {}
     for result in results:
         groups.setdefault((result.fault, result.level), []).append(result)
-    rates = []
-    for group in groups.values():
-        first, count = group[0], len(group)
-        within = sum(result.within_limits for result in group)
-        safe = sum(is_safe(result) for result in group)
-        rates.append(
-            Rates(
-                first.fault, first.kind, first.level, first.severity, count,
-                within, within / count, *interval(within, count), safe, safe / count, *interval(safe, count),
-            )
-        )  # fmt: skip
-    return rates
+    return [_row(group) for group in groups.values()]
+
+
+def _row(group: Sequence[Result]) -> dict[str, Any]:
+    row = {**group[0].row(("fault", "kind", "level", "severity")), "flights": len(group)}
+    for name, held in (("within_limits", sum(r.within_limits for r in group)), ("safe", sum(map(is_safe, group)))):
+        low, high = interval(held, len(group))
+        row |= {name: held, f"{name}_rate": held / len(group), f"{name}_low": low, f"{name}_high": high}
+    return row
 
 
 def interval(successes: int, trials: int) -> tuple[float, float]:

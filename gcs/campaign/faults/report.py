@@ -1,8 +1,10 @@
 """The report of a campaign of faults: tables, rates, and the matrix of faults and severities."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
@@ -11,9 +13,9 @@ from rich.table import Table
 from rich.text import Text
 
 from gcs.campaign.faults.detection_table import Detections
-from gcs.campaign.faults.false_alarms import FalseAlarms, false_alarms
+from gcs.campaign.faults.false_alarms import false_alarms
 from gcs.campaign.faults.judgement import COLUMNS
-from gcs.campaign.faults.rates import CONFIDENCE, Rates, rates_of
+from gcs.campaign.faults.rates import CONFIDENCE, rates_of
 from gcs.campaign.result import Result
 from gcs.campaign.tables import extreme, text_table, write_records, write_results
 from gcs.record.figures import save_picture
@@ -37,13 +39,13 @@ def report(
     rates, clear = rates_of(results), false_alarms(results)
     files = [
         *write_results(out, COLUMNS, results),
-        write_records(out / "rates.csv", Rates, rates, ".4f"),
+        write_records(out / "rates.csv", rates, ".4f"),
         draw_matrix(name, results, out),
     ]
     if rows:
-        files.append(write_records(out / "detection.csv", Detections, rows))
+        files.append(write_records(out / "detection.csv", [asdict(row) for row in rows]))
     if any(result.clean_s is not None for result in results):
-        files.append(write_records(out / "false_alarms.csv", FalseAlarms, clear, ".4f"))
+        files.append(write_records(out / "false_alarms.csv", [asdict(row) for row in clear], ".4f"))
     parts: list[RenderableType] = [_rates_table(rates, results)]
     parts.append(Text(f"Rates with their {100 * CONFIDENCE:.0f} % intervals (Wilson); safe: set down without contact."))
     if false := sum(result.false_alarms or 0 for result in results):
@@ -54,18 +56,18 @@ def report(
     return parts, files
 
 
-def _rates_table(rates: Sequence[Rates], results: Sequence[Result]) -> Table:
+def _rates_table(rates: Sequence[Mapping[str, Any]], results: Sequence[Result]) -> Table:
     """Return a row for each fault and severity."""
     rows = []
     for rate in rates:
-        chosen = [result for result in results if (result.fault, result.level) == (rate.fault, rate.level)]
+        chosen = [result for result in results if (result.fault, result.level) == (rate["fault"], rate["level"])]
         rows.append(
             {
-                "fault": rate.fault,
-                "severity": rate.severity,
-                "flights": str(rate.flights),
-                "within limits": _share(rate.within_limits_rate, rate.within_limits_low, rate.within_limits_high),
-                "safe": _share(rate.safe_rate, rate.safe_low, rate.safe_high),
+                "fault": rate["fault"],
+                "severity": rate["severity"],
+                "flights": str(rate["flights"]),
+                "within limits": _share(rate, "within_limits"),
+                "safe": _share(rate, "safe"),
                 "least clearance": extreme(chosen, "clearance_min_m", min, 2, "m"),
                 "largest tilt": extreme(chosen, "tilt_max_deg", max, 1, "deg"),
                 "least separation": extreme(chosen, "uav_separation_min_m", min, 2, "m"),
@@ -85,8 +87,9 @@ def _detected(results: Sequence[Result]) -> str:
     return extreme(results, "detected_s", max, 2, "s") + share
 
 
-def _share(rate: float, low: float, high: float) -> str:
-    return f"{100 * rate:.0f} % ({100 * low:.0f} to {100 * high:.0f})"
+def _share(rate: Mapping[str, Any], name: str) -> str:
+    share, low, high = (100 * rate[f"{name}_{end}"] for end in ("rate", "low", "high"))
+    return f"{share:.0f} % ({low:.0f} to {high:.0f})"
 
 
 def shown_as(result: Result) -> str:

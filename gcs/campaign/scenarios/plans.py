@@ -1,6 +1,7 @@
 """Plans of random obstacle scenarios (``gcs courses``)."""
 
 import hashlib
+import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -10,14 +11,38 @@ from typing import Any
 from rich.console import RenderableType
 
 from gcs.campaign.engine import PlanGenerator
-from gcs.campaign.flight import FlightPlan
+from gcs.campaign.flight import DONE, OUTSIDE_LIMITS, FlightPlan
 from gcs.campaign.grid import Grid, variants
-from gcs.campaign.result import Result
+from gcs.campaign.result import Flown, Result, summary_columns
 from gcs.campaign.scenarios.generator import DEFAULT_KINDS, HELD_TO, generate
-from gcs.campaign.scenarios.judgement import COLUMNS, judge, least_separation
+from gcs.campaign.scenarios.judgement import COLUMNS, judge, judged, least_separation
 from gcs.campaign.scenarios.passage import Passage
-from gcs.campaign.scenarios.planning import fly_planning
 from gcs.config import read_system
+from gcs.mission.model import Limits
+from gcs.mission.read import read_mission
+from gcs.planning.flight import PlanningFlight
+from gcs.planning.outcome import planned
+from gcs.planning.schedule import Schedule
+
+
+def fly_planning(held_to: Limits, passage: Passage | None, plan: FlightPlan) -> Result:
+    """Fly the mission of a ``plan`` on ideal tracking in this process; the arguments are those of its judgement."""
+    wall, cpu = time.monotonic(), time.process_time()
+    mission = read_mission(plan.mission, plan.config, plan.settings)
+    schedule = Schedule(mission)
+    flight, run = PlanningFlight(mission, schedule.start), None
+    exit_code, summary, reason = OUTSIDE_LIMITS, dict[str, Any](), ""
+    try:
+        flight.fly()
+        run = planned(flight)
+    except Exception as error:
+        reason = f"{type(error).__name__}: {error}"
+    else:
+        summary = {**run.summary, "cpu_s": round(time.process_time() - cpu, 2)}
+        exit_code, reason = DONE, summary["reason"]
+    flown = Flown(exit_code, summary, reason, time.monotonic() - wall)
+    columns = judged(mission, schedule, held_to, passage, flown, run)
+    return Result(**{**summary_columns(flown), **columns})
 
 
 @dataclass(frozen=True, kw_only=True)
