@@ -14,15 +14,13 @@ from rich.live import Live
 from rich.text import Text
 
 from gcs.flight.flight import Flight
-from gcs.flight.flight_status import Figure, FlightStatus, State
+from gcs.flight.flight_status import Figure, FlightStatus
 from gcs.flight.phase import Phase
 
 DRAW_INTERVAL = 0.5
 """s of flight time after which the figures at a terminal are taken anew."""
 STATUS_INTERVAL = 10.0
 """s of flight time from one print of the figures to the next elsewhere."""
-
-_COLOURS = {None: "", State.OK: "green", State.WARNING: "yellow", State.BAD: "red"}
 
 
 class FlightProgress:
@@ -76,9 +74,7 @@ class FlightProgress:
     def _draw(self, status: FlightStatus) -> None:
         self._is_shown = False
         rows = [row for group in (status.payload(), status.links()) for row in _rows(group, self._console.width)]
-        self._figures = [
-            Text("  ").join(Text(figure.text, style=_COLOURS[figure.state]) for figure in row) for row in rows
-        ]
+        self._figures = [Text("  ").join(Text(figure.text, style=figure.state) for figure in row) for row in rows]
         self._times = status.times()
 
     def _block(self) -> Group:

@@ -19,14 +19,9 @@ def mission_text(
 ) -> str:
     """Return a mission file. ``reference`` is a figure eight or the keys of a table of kind waypoints."""
     keys = {"kind": "waypoints", **reference} if isinstance(reference, Mapping) else _fields(reference)
-    tables = [
-        "\n".join(f"# {comment}" for comment in comments),
-        _table("[mission]", {"name": name, "seed": seed}),
-        _table("[reference]", keys),
-        *(_table("[[obstacle]]", keys_of(obstacle)) for obstacle in obstacles),
-        _table("[limits]", _fields(limits)),
-    ]
-    return "\n\n".join(table for table in tables if table) + "\n"
+    tables = {"mission": {"name": name, "seed": seed}, "reference": keys}
+    text = tables_text({**tables, "obstacle": [*map(keys_of, obstacles)], "limits": _fields(limits)})
+    return "".join(f"# {comment}\n" for comment in comments) + ("\n" if comments else "") + text
 
 
 def tables_text(data: Mapping[str, Any]) -> str:

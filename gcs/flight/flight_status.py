@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
@@ -29,19 +28,15 @@ _LONGEST = 1800.0
 """s; beyond which the end of a mission is not computed in advance."""
 
 
-class State(Enum):
-    """State of a figure."""
-
-    OK = "ok"
-    WARNING = "warning"
-    BAD = "bad"
+OK, WARNING, BAD = "green", "yellow", "red"
+"""States of a figure, as the colours in which they are shown."""
 
 
 class Figure(NamedTuple):
-    """A figure with its unit, and its state; None: there is no limit to it."""
+    """A figure with its unit, and its state; empty: there is no limit to it."""
 
     text: str
-    state: State | None = None
+    state: str = ""
 
 
 class FlightStatus:
@@ -95,7 +90,7 @@ class FlightStatus:
         if not near:
             return Figure(f"no obstacle within {self._range:.0f} m")
         least = min(separation.clearance for separation in near)
-        state = State.OK if least >= self._margin else State.WARNING if least > 0.0 else State.BAD
+        state = OK if least >= self._margin else WARNING if least > 0.0 else BAD
         return Figure(f"clearance {least:.2f} m (margin {self._margin:.2f} m)", state)
 
     def links(self) -> list[Figure]:
@@ -138,13 +133,13 @@ class _LinkStatus:
         duration, received, missing = self._count()
         silent = self._flight.ground_time - link.telemetry_received_at
         if math.isinf(silent):
-            return Figure(f"{name} no telemetry yet", State.WARNING)
+            return Figure(f"{name} no telemetry yet", WARNING)
         if silent > limits.telemetry_timeout:
-            return Figure(f"{name} no telemetry for {silent:.1f} s", State.BAD)
+            return Figure(f"{name} no telemetry for {silent:.1f} s", BAD)
         loss, latency = missing / max(received + missing, 1), link.clock.delay
         rate = received / duration if duration > 0.0 else 0.0
         is_late = latency > system.flight.monitor.latency_periods / system.rates.control
-        state = State.WARNING if is_late or loss > system.mavlink.link.second_copy_loss else State.OK
+        state = WARNING if is_late or loss > system.mavlink.link.second_copy_loss else OK
         if latency > limits.latency_limit:
-            state = State.BAD
+            state = BAD
         return Figure(f"{name} loss {100.0 * loss:4.1f} %, {1e3 * latency:3.0f} ms, {rate:3.0f} Hz", state)

@@ -90,18 +90,21 @@ def read_mission_file(path: Path) -> tuple[TomlFile, MissionFile]:
 def points_route(file: TomlFile, table: WaypointsTable, speed: float, system: SystemConfig) -> Route:
     """Return the route through ``points``. Raises :class:`UnusableFile` for points that cannot be flown to."""
     points = table.points or ()
-    lowest = -system.resting_altitude
-    problems = []
-    for i, (x, y, z) in enumerate(points):
-        if z > lowest:
-            reason = f"z = {z:g} m is below ground (limit {lowest:g} m, down is positive)"
-            problems.append(file.problem(("reference", "points", i), reason))
-        if max(abs(x), abs(y), abs(z)) > FARTHEST:
-            reason = f"[{x:g}, {y:g}, {z:g}] is more than {FARTHEST / 1000.0:g} km from home"
-            problems.append(file.problem(("reference", "points", i), reason))
-    if problems:
-        raise UnusableFile(problems)
+    if found := unreachable(points, system):
+        raise UnusableFile([file.problem(("reference", "points", i), reason) for i, reason in found])
     return route_through(points, speed, system, table.hold or 0.0, return_home=table.return_home is not False)
+
+
+def unreachable(points: Sequence[Vector], system: SystemConfig) -> list[tuple[int, str]]:
+    """Return index and reason of each of ``points`` (NED, m) at which the payload cannot be."""
+    lowest, found = -system.resting_altitude, []
+    for i, point in enumerate(points):
+        if point[2] > lowest:
+            found.append((i, f"z = {point[2]:g} m is below ground (limit {lowest:g} m, down is positive)"))
+        if max(map(abs, point)) > FARTHEST:
+            place = ", ".join(f"{value:g}" for value in point)
+            found.append((i, f"[{place}] is more than {FARTHEST / 1000.0:g} km from home"))
+    return found
 
 
 def route_through(

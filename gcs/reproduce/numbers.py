@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -37,15 +37,13 @@ def numbers(plan: Plan, results: Results) -> dict[str, Any]:
     _effort_against_design(found.get("mass", {}))
     if "noise" in found:
         found["noise_worst"] = _worst_by_sigma(found["noise"])
-    found["flights"] = {
-        name: flight_numbers(summary, read_run(results.folders[name]))
-        for name, summary in sorted(results.flights.items())
-    }
+    found["flights"] = {name: flight_numbers(read_run(folder)) for name, folder in sorted(results.folders.items())}
     return found
 
 
-def flight_numbers(summary: Mapping[str, Any], run: RunData) -> dict[str, Any]:
+def flight_numbers(run: RunData) -> dict[str, Any]:
     """Return figures of a flight's summary, and its figures until the first contact."""
+    summary = run.summary
     contacts = run.contacts if run.contacts is not None else np.zeros(len(run.time))
     powered = (run.thrust > 0.0).any(axis=1)
     in_contact = np.flatnonzero((contacts > 0) & powered)
@@ -228,11 +226,8 @@ def matrices() -> dict[str, tuple[Array, Sequence[str], Sequence[str]]]:
     """Return the matrices of the paper's external file, with labels of rows and of columns, at hover and 20 Hz."""
     p = configuration().parameters()
     full, small, inputs = Layout.full(4).names(), Layout.minimal(4).names(), state_space.input_names(4)
-    continuous, continuous_small = state_space.linearised(p), state_space.minimal(p)
-    A, B, A_small, B_small = (
-        *discretised(*continuous, PERIOD),
-        *discretised(*continuous_small, PERIOD),
-    )
+    continuous = state_space.linearised(p)
+    (A, B), (A_small, B_small) = (discretised(*pair, PERIOD) for pair in (continuous, state_space.minimal(p)))
     return {
         "A_continuous": (continuous[0], full, full), "B_continuous": (continuous[1], full, inputs),
         "A": (A, full, full), "B": (B, full, inputs),

@@ -1,7 +1,6 @@
 """``index.html``: what was reproduced, figure by figure, and the text with this run's numbers."""
 
 import html
-import json
 import math
 import re
 from collections.abc import Mapping, Sequence
@@ -90,11 +89,6 @@ Files: <a href="paper.md">paper.md</a> (equation by equation), <a href="numbers.
     page = out / "index.html"
     page.write_text(body, encoding="utf-8")
     return page
-
-
-def write_numbers(path: Path, numbers: Mapping[str, Any]) -> None:
-    """Write ``numbers`` as strict JSON."""
-    path.write_text(json.dumps(numbers, indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def rounded(value: Any) -> Any:

@@ -54,9 +54,8 @@ def plan(quick: bool) -> Plan:
             for seed in (1,) if quick else (1, 2, 3):
                 cases["noise", f"{name}_{sigma:g}_{seed}"] = replace(short, sigma=sigma, seed=seed)
     flights = {
-        "pole_course_idc": ("pole_course.toml", "idc"),
-        "pole_course_paper": ("pole_course.toml", "paper"),
-        "figure_eight_spheres_idc": ("figure_eight_spheres.toml", "idc"),
-        "figure_eight_spheres_paper": ("figure_eight_spheres.toml", "paper"),
+        f"{mission}_{controller}": (f"{mission}.toml", controller)
+        for mission in ("pole_course", "figure_eight_spheres")
+        for controller in ("idc", "paper")
     }
     return Plan(quick, cases, {} if quick else flights, 16 if quick else 120)

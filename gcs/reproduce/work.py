@@ -13,14 +13,16 @@ from gcs.errors import GcsError
 from gcs.reproduce.plan import Plan
 from gcs.reproduce.simulation import Flown, simulate
 
+FLIGHTS = "flights"
+"""Their section."""
+
 
 @dataclass
 class Results:
-    """Run folders and summaries of the flights by name, and simulations by section and name."""
+    """Run folders of the flights by name, and simulations by section and name."""
 
     folders: Mapping[str, Path] = field(default_factory=dict)
     simulations: dict[tuple[str, str], Flown] = field(default_factory=dict)
-    flights: dict[str, Mapping[str, Any]] = field(default_factory=dict)
 
 
 def run(plan: Plan, missions: Path, out: Path, jobs: int | None, done: Callable[[str], None]) -> Results:
@@ -31,7 +33,7 @@ def run(plan: Plan, missions: Path, out: Path, jobs: int | None, done: Callable[
     results = Results({name: out / "flights" / name for name in plan.flights})
     # The longest first, so that no core idles at the end.
     tasks: dict[tuple[str, str], Callable[[], Any]] = {
-        ("flights", name): partial(_fly, missions / mission, controller, results.folders[name])
+        (FLIGHTS, name): partial(_fly, missions / mission, controller, results.folders[name])
         for name, (mission, controller) in plan.flights.items()
     }
     cases = sorted(plan.cases.items(), key=lambda item: -item[1].duration)
@@ -41,10 +43,8 @@ def run(plan: Plan, missions: Path, out: Path, jobs: int | None, done: Callable[
         (section, name), _ = item
         if result is None:
             raise GcsError(f"{section} {name}: its process was killed")
-        if (section, name) in plan.cases:
+        if section != FLIGHTS:
             results.simulations[section, name] = result
-        else:
-            results.flights[name] = result
         done(f"{section} {name}")
 
     with WorkerProcesses(jobs) as executor:
@@ -57,7 +57,6 @@ def _carry_out(item: tuple[tuple[str, str], Callable[[], Any]]) -> Any:
     return call()
 
 
-def _fly(mission: Path, controller: str, run_dir: Path) -> Mapping[str, Any]:
-    """Return the summary of a flight."""
+def _fly(mission: Path, controller: str, run_dir: Path) -> str:
     remove_folder(run_dir)  # of a process that was killed
-    return gcs.fly(mission, controller=controller, run_dir=run_dir).figures
+    return gcs.fly(mission, controller=controller, run_dir=run_dir).outcome

@@ -14,7 +14,7 @@ from gcs.app.flight_log import FlightLog
 from gcs.app.fly import ground_station
 from gcs.app.logs import logging_to
 from gcs.app.progress import FlightProgress
-from gcs.flight.flight_status import Figure, FlightStatus, State
+from gcs.flight.flight_status import BAD, OK, WARNING, Figure, FlightStatus
 from gcs.mission.read import read_mission
 from gcs.record.recorder import FlightRecorder
 from idc_controller.geometry.formation import Formation
@@ -143,7 +143,7 @@ def test_links_show_loss_latency_and_silence_by_their_limits(tmp_path):
     with FlightRecorder(tmp_path, 0.0) as recorder:
         flight = ground_station(mission, [None] * 4, recorder).flight
         status = FlightStatus(flight)
-        assert status.links()[0] == Figure("link 1: no telemetry yet", State.WARNING)
+        assert status.links()[0] == Figure("link 1: no telemetry yet", WARNING)
         flight.ground_time = 2.0
         for link, lost, delay, heard in zip(
             flight.system.team.links, (0, 40, 0, 0), (0.001, 0.001, 0.2, 0.001), (2.0, 2.0, 2.0, 1.0), strict=True
@@ -152,10 +152,10 @@ def test_links_show_loss_latency_and_silence_by_their_limits(tmp_path):
             link.clock.add_answer(link.clock.request(0.0), 2.0 * delay)
             link.position_received_at = heard
         assert status.links() == [
-            Figure("link 1: loss  0.0 %,   1 ms, 100 Hz", State.OK),
-            Figure("link 2: loss 20.0 %,   1 ms,  80 Hz", State.WARNING),
-            Figure("link 3: loss  0.0 %, 200 ms, 100 Hz", State.BAD),
-            Figure("link 4: no telemetry for 1.0 s", State.BAD),
+            Figure("link 1: loss  0.0 %,   1 ms, 100 Hz", OK),
+            Figure("link 2: loss 20.0 %,   1 ms,  80 Hz", WARNING),
+            Figure("link 3: loss  0.0 %, 200 ms, 100 Hz", BAD),
+            Figure("link 4: no telemetry for 1.0 s", BAD),
         ]
 
 

@@ -260,7 +260,7 @@ def test_each_line_of_a_list_becomes_a_mission(tmp_path):
         ({"points": []}, "points: needs at least 1, has 0"),
         ({"points": None}, "points: must be a valid"),
         ({"points": [[1.0, 2.0, 3.0]]}, "points[1]: z = 3 m is below ground"),
-        ({"points": [[1e5, 2.0, -3.0]]}, "points[1]: is more than 10 km from home"),
+        ({"points": [[1e5, 2.0, -3.0]]}, "points[1]: [100000, 2, -3] is more than 10 km from home"),
         ({"speed": -1}, "speed: must be greater than 0, found -1"),
         ({"poles": [{"north": 1.0, "east": 0.5, "radius": 0.2}]}, "poles[1].height: missing key"),
         ({"poles": [{"north": 9.0, "east": 0.5, "radius": 0.0, "height": 3.0}]}, "poles[1].radius: must be greater"),

@@ -182,14 +182,14 @@ def test_flight_numbers_cover_time_to_first_contact(tmp_path):
     tilt, contacts = np.zeros(60), np.zeros(60)
     tilt[20], tilt[57:], contacts[56:] = 7.0, 80.0, 1
     run = recorded(tmp_path, tilt, contacts)
-    quoted_values = flight_numbers(run.summary, run)
+    quoted_values = flight_numbers(run)
     assert quoted_values["first_contact_s"] == pytest.approx(5.6)
     assert quoted_values["touched_first"] == "ball"
     assert quoted_values["tilt_max_before_contact_deg"] == pytest.approx(7.0)
     contacts[10] = 1  # far from everything
-    early = flight_numbers(run.summary, recorded(tmp_path, tilt, contacts))
+    early = flight_numbers(recorded(tmp_path, tilt, contacts))
     assert early["touched_first"] == "one UAV another"
-    none = flight_numbers(run.summary, recorded(tmp_path, np.zeros(60), np.zeros(60)))
+    none = flight_numbers(recorded(tmp_path, np.zeros(60), np.zeros(60)))
     assert none["first_contact_s"] is None
     runs = {"idc": recorded(tmp_path, np.zeros(60), np.zeros(60)), "paper": run}
     for draw in (figures.draw_course, figures.draw_course_position):

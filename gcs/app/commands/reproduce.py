@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import json
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -23,7 +24,7 @@ from gcs.record.run_folder import UnwritableFile, check_writable, make_folder
 from gcs.reproduce import figures, work
 from gcs.reproduce.animation import animate
 from gcs.reproduce.numbers import matrices, numbers
-from gcs.reproduce.page import paper_text, rounded, write_numbers, write_page
+from gcs.reproduce.page import paper_text, rounded, write_page
 from gcs.reproduce.plan import Plan, plan
 from gcs.reproduce.work import Results
 
@@ -74,7 +75,8 @@ def run(arguments: argparse.Namespace) -> int:
         with _progress(console, chosen) as done:
             results = work.run(chosen, missions, out, arguments.jobs, done)
             found = rounded(numbers(chosen, results))
-            write_numbers(out / "numbers.json", found)
+            numbers_text = json.dumps(found, indent=1, allow_nan=False) + "\n"
+            (out / "numbers.json").write_text(numbers_text, encoding="utf-8")
             (out / "paper.md").write_text(paper_text(found, links=False), encoding="utf-8")
             _write_matrices(out / "matrices")
             done("numbers and matrices")

@@ -19,7 +19,7 @@ from gcs.config.text_file import read_text, why_unparsed
 from gcs.config.validate import Key, Positive, UnusableFile, dotted, strict, validated
 from gcs.mission.items import FARTHEST, ITEM_LIMIT
 from gcs.mission.model import Mission, Name, Obstacle
-from gcs.mission.toml_mission import route_through
+from gcs.mission.toml_mission import route_through, unreachable
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 
@@ -105,9 +105,7 @@ def _course(path: Path, number: int, line: _Line, system: SystemConfig, speed: f
     ]
     keys: list[Key] = [*(("poles", i) for i in range(len(poles))), *(("boxes", i) for i in range(len(boxes)))]
     obstacles = [*poles, *boxes]
-    problems = [
-        problem(("points", i), reason) for i, point in enumerate(line.points) if (reason := _unreachable(point, system))
-    ]
+    problems = [problem(("points", i), reason) for i, reason in unreachable(line.points, system)]
     if len(obstacles) > MOST_OBSTACLES:
         reason = f"{len(obstacles)} poles and boxes (limit {MOST_OBSTACLES})"
         problems.append(problem(("poles",), reason))
@@ -125,12 +123,3 @@ def _course(path: Path, number: int, line: _Line, system: SystemConfig, speed: f
     comments = [f"Line {number} of {path.name}.", *passage_comments(passage)]
     content = mission_text(name, seed, reference, obstacles, HELD_TO, comments)
     return Course(name, KIND, f"{path}: line {number}", passage, content)
-
-
-def _unreachable(point: Vector, system: SystemConfig) -> str:
-    """Return why the payload cannot be at a point; empty: it can."""
-    if -point[2] < system.resting_altitude:
-        return f"z = {point[2]:g} m is below ground (limit {-system.resting_altitude:g} m, down is positive)"
-    if max(map(abs, point)) > FARTHEST:
-        return f"is more than {FARTHEST / 1000.0:g} km from home"
-    return ""
