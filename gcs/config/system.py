@@ -239,12 +239,8 @@ def _disagreements(config: SystemConfig, file: TomlFile) -> list[str]:
     """Return what is wrong between keys, one line each."""
     rates, team, motion = config.rates, config.team, config.motion
     found: list[tuple[tuple[str, str], str]] = []
-    for key, rate in {
-        ("rates", "onboard"): rates.onboard,
-        ("rates", "telemetry"): rates.telemetry,
-        ("rates", "control"): rates.control,
-        ("range_sensor", "rate"): config.range_sensor.rate,
-    }.items():
+    divided = {("rates", name): getattr(rates, name) for name in ("onboard", "telemetry", "control")}
+    for key, rate in {**divided, ("range_sensor", "rate"): config.range_sensor.rate}.items():
         if rates.physics % rate:
             found.append((key, f"{rate} Hz does not divide physics, {rates.physics} Hz"))
         if rate > rates.telemetry and key != ("rates", "onboard"):
@@ -259,13 +255,10 @@ def _disagreements(config: SystemConfig, file: TomlFile) -> list[str]:
         if inertia is not None and 2.0 * max(inertia) > sum(inertia) * (1.0 + 1e-9):
             reason = f"{list(inertia)}: no rigid body has a moment larger than the sum of the two others"
             found.append(((table, "inertia"), reason))
-    if config.range_sensor.range_min >= config.range_sensor.range:
-        reason = f"{config.range_sensor.range_min} m is not below range, {config.range_sensor.range} m"
-        found.append((("range_sensor", "range_min"), reason))
-    if config.range_sensor.elevation_min_deg >= config.range_sensor.elevation_max_deg:
-        lowest, highest = config.range_sensor.elevation_min_deg, config.range_sensor.elevation_max_deg
-        reason = f"{lowest} deg is not below elevation_max_deg, {highest} deg"
-        found.append((("range_sensor", "elevation_min_deg"), reason))
+    for low, high, unit in ("range_min", "range", "m"), ("elevation_min_deg", "elevation_max_deg", "deg"):
+        lowest, highest = getattr(config.range_sensor, low), getattr(config.range_sensor, high)
+        if lowest >= highest:
+            found.append((("range_sensor", low), f"{lowest} {unit} is not below {high}, {highest} {unit}"))
     if motion.speed > motion.speed_max:
         found.append((("motion", "speed"), f"{motion.speed} is more than speed_max, {motion.speed_max}"))
     return [file.problem(key, reason) for key, reason in found]

@@ -39,7 +39,7 @@ class TomlFile:
         kind: Validator[T] | type[T],
         data: dict[str, Any] | None = None,
         under: Key = (),
-        suggestions: Suggestions | None = None,
+        suggestions: Suggestions = Suggestions(),
     ) -> T:
         """Return the file's data (or ``data`` in its place, of the same keys below ``under``) as ``kind``.
 

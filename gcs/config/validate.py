@@ -3,7 +3,7 @@
 import json
 from collections.abc import Callable, Collection, Mapping, Sequence
 from difflib import get_close_matches
-from typing import Annotated, Any, Protocol, TypeVar
+from typing import Annotated, Any, NamedTuple, Protocol, TypeVar
 
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, with_config
 
@@ -53,16 +53,13 @@ def strict(cls: type[T]) -> type[T]:
     return with_config(ConfigDict(extra="forbid", allow_inf_nan=False))(cls)
 
 
-class Suggestions:
-    """What the words of a file could mean that its tables do not know; here: nothing."""
+class Suggestions(NamedTuple):
+    """What the words of a file could mean that its tables do not know."""
 
-    def key_meant(self, key: Key, given: Collection[str]) -> str | None:
-        """Return the name that the last part of an unknown ``key`` means, none of those ``given`` in its table."""
-        return None
-
-    def value_meant(self, key: Key, value: object) -> str | None:
-        """Return the value that is meant by one that the ``key`` does not take."""
-        return None
+    key_meant: Callable[[Key, Collection[str]], str | None] = lambda key, given: None
+    """The name that the last part of an unknown key means, none of those given in its table."""
+    value_meant: Callable[[Key, object], str | None] = lambda key, value: None
+    """The value that is meant by one that the key does not take."""
 
 
 _adapters: dict[type[Any], TypeAdapter[Any]] = {}
@@ -80,7 +77,7 @@ def validated(
     data: Any,
     problem: Callable[[Key, str], str],
     context: Mapping[str, Any] | None = None,
-    suggestions: Suggestions | None = None,
+    suggestions: Suggestions = Suggestions(),
 ) -> T:
     """Return ``data`` as ``kind``, a type or the validator of one.
 
@@ -116,9 +113,8 @@ def shown(value: Any) -> str:
     return text if len(text) <= 40 else text[:37] + "..."
 
 
-def _lines(data: Any, errors: Sequence[dict[str, Any]], suggestions: Suggestions | None) -> list[tuple[Key, str]]:
+def _lines(data: Any, errors: Sequence[dict[str, Any]], suggestions: Suggestions) -> list[tuple[Key, str]]:
     """Return the keys and reasons of the errors that pydantic found in ``data``, with what was meant."""
-    suggestions = suggestions or Suggestions()
     # Items that are wrong are not counted: one mistake in a list must not make it too short.
     errors = [e for e in errors if e["type"] != "too_short" or len(e["input"]) < e["ctx"]["min_length"]]
     lines = [_explained(data, error) for error in errors]

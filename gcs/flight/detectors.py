@@ -203,7 +203,7 @@ class _MessageEvents:
 
     def _add(self, step: MonitorStep, i: int, totals: tuple[int, ...]) -> None:
         """Add what is new in the totals of a vehicle's link, the last of which is the payload's."""
-        sources = [step.name(i)] * (len(totals) - 1) + [step.name(PAYLOAD)]
+        sources = [step.names[i]] * (len(totals) - 1) + [step.names[PAYLOAD]]
         for source, code, total, before in zip(sources, self._CODES, totals, self._totals[i], strict=True):
             if total > before:
                 events = self._setpoints if code is MonitorAlarm.SETPOINTS_LOST else self._events
@@ -233,7 +233,7 @@ class _Innovations:
                 self._tests.forget_attitudes()
             for (source, kind), findings in self._tests.findings(step.time).items():
                 for finding in findings:
-                    step.raise_alarm(step.name(source), _OF_FINDING[finding], kind.__name__.lower())
+                    step.raise_alarm(step.names[source], _OF_FINDING[finding], kind.__name__.lower())
         _raise_frequent(step, self._resets, self._count)
 
 
@@ -248,13 +248,13 @@ def _range_sensors(step: MonitorStep) -> None:
     """Range sensors that vehicles report as failed, and those that are silent or displaced."""
     for i, link in enumerate(step.links):
         if not link.status.obstacle_sensing_valid:
-            step.raise_alarm(step.name(i), MonitorAlarm.RANGE_SENSOR_FAILED)
+            step.raise_alarm(step.names[i], MonitorAlarm.RANGE_SENSOR_FAILED)
     sensors = step.flight.system.obstacle_map.placement.range_sensors
     for i in sensors.silent:
         if step.links[i].status.obstacle_sensing_valid:
-            step.raise_alarm(step.name(i), MonitorAlarm.RANGE_SENSOR_SILENT)
+            step.raise_alarm(step.names[i], MonitorAlarm.RANGE_SENSOR_SILENT)
     for i in sensors.displaced:
-        step.raise_alarm(step.name(i), MonitorAlarm.RANGE_SENSOR_DISPLACED)
+        step.raise_alarm(step.names[i], MonitorAlarm.RANGE_SENSOR_DISPLACED)
 
 
 def _estimator_health(step: MonitorStep) -> None:
@@ -263,13 +263,13 @@ def _estimator_health(step: MonitorStep) -> None:
         return
     health = step.flight.control.estimator.health
     for sender, other in step.id_check.swapped.items():
-        step.raise_alarm(step.name(sender), MonitorAlarm.ID_SWAP, f"sends the data of {step.name(other)}")
+        step.raise_alarm(step.names[sender], MonitorAlarm.ID_SWAP, f"sends the data of {step.names[other]}")
     for channel in health.stuck_channels:
-        step.raise_alarm(step.name(channel.source), MonitorAlarm.STUCK_SENSOR, channel.name)
+        step.raise_alarm(step.names[channel.source], MonitorAlarm.STUCK_SENSOR, channel.name)
     isolated = [c for c in health.isolation.isolated if step.steady or c.kind is Position]
     for uav in dict.fromkeys(channel.source for channel in isolated):
         channels = ", ".join(channel.name for channel in isolated if channel.source == uav)
-        step.raise_alarm(step.name(uav), MonitorAlarm.CHANNEL_ISOLATED, channels)
+        step.raise_alarm(step.names[uav], MonitorAlarm.CHANNEL_ISOLATED, channels)
     for group, (poses, _) in health.isolated_groups.items():
         names = ("positions", "velocities") if group.kind is Position else ("attitudes", "rates")
         source, owner = ("payload", "the payload") if group.of_payload else ("team", "all vehicles")
@@ -307,7 +307,7 @@ def _obstacles(step: MonitorStep) -> None:
         step.raise_alarm(name, MonitorAlarm.TRACK_LOST, "not detected although a vehicle is near")
     for uav, offset in obstacle_map.map_offsets.items():
         text = f"detects obstacles {float(np.linalg.norm(offset)):.2f} m from the map"
-        step.raise_alarm(step.name(uav), MonitorAlarm.VEHICLE_MAP_OFFSET, text)
+        step.raise_alarm(step.names[uav], MonitorAlarm.VEHICLE_MAP_OFFSET, text)
 
 
 def detectors(flight: Flight, settings: MonitorSettings) -> tuple[Detector, ...]:

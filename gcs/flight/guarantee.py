@@ -54,7 +54,7 @@ class Guarantee:
             step.raise_alarm("payload", GuaranteeAlarm.PLAN_DEVIATION_EXCEEDED, text)
         for i in np.flatnonzero(uavs > safety.uav_bound).tolist():
             text = f"{uavs[i]:.2f} m off the plan (bound {safety.uav_bound:.2f} m)"
-            step.raise_alarm(step.name(i), GuaranteeAlarm.PLAN_DEVIATION_EXCEEDED, text)
+            step.raise_alarm(step.names[i], GuaranteeAlarm.PLAN_DEVIATION_EXCEEDED, text)
 
     def deviations(self, record: StepRecord) -> tuple[float, Array]:
         """Return how far payload and UAVs (N,) (m) are from the plan, by the estimate.

@@ -51,10 +51,6 @@ class MonitorStep(NamedTuple):
         """The links of all vehicles."""
         return self.flight.system.team.links
 
-    def name(self, source: int) -> str:
-        """Return the name of a vehicle (0 .. N-1) or of the payload."""
-        return self.names[source]
-
     def raise_alarm(self, source: str, code: ScopedAlarm, text: str = "") -> None:
         """Raise an alarm now, if its scope allows."""
         within = {Scope.ALWAYS: True, Scope.IN_AIR: self.in_air, Scope.CLEAR_OF_GROUND: self.clear}

@@ -13,24 +13,21 @@ _KEYS = ("kind", "start", "duration", "every", "times", "vehicles", "direction")
 """Keys of every fault; all others are parameters of its kind."""
 
 
-class FaultSuggestions(Suggestions):
-    """What is meant in the tables of faults; ``kind`` of the fault, where the keys are those of one."""
+def fault_suggestions(kind: str = "", own: Collection[str] = ()) -> Suggestions:
+    """Return what is meant in the tables of faults; with a ``kind``, in one that has the keys ``own`` besides."""
 
-    def __init__(self, kind: str = "", given: Collection[str] = ()) -> None:
-        self._kind, self._given = kind, given
-
-    def key_meant(self, key: Key, given: Collection[str]) -> str | None:
-        """See :class:`Suggestions`."""
+    def key_meant(key: Key, given: Collection[str]) -> str | None:
         from gcs.faults.suggestions import key_meant
 
-        return key_meant(self._kind, str(key[-1]), {*self._given, *given}) if self._kind else None
+        return key_meant(kind, str(key[-1]), {*own, *given}) if kind else None
 
-    def value_meant(self, key: Key, value: object) -> str | None:
-        """See :class:`Suggestions`."""
+    def value_meant(key: Key, value: object) -> str | None:
         from gcs.faults.suggestions import value_meant
 
         name = next((part for part in reversed(key) if isinstance(part, str)), "")
-        return value_meant(self._kind, name, value)
+        return value_meant(kind, name, value)
+
+    return Suggestions(key_meant, value_meant)
 
 
 def fault_data(file: TomlFile, index: int, table: Any) -> Any:
@@ -47,7 +44,7 @@ def read_fault(file: TomlFile, index: int, table: Mapping[str, Any]) -> Fault:
     Raises :class:`UnusableFile` for unknown kinds and keys and for wrong values; whether the fault agrees with itself
     and with a system, :func:`fault_problems` checks.
     """
-    fault = file.validated(Fault, fault_data(file, index, table), ("fault", index), FaultSuggestions())
+    fault = file.validated(Fault, fault_data(file, index, table), ("fault", index), fault_suggestions())
     if problems := parameter_problems(file, index, fault):
         raise UnusableFile(problems)
     return fault
@@ -65,7 +62,7 @@ def parameter_problems(file: TomlFile, index: int, fault: Fault) -> list[str]:
         return [file.problem(("fault", index, "kind"), f"there is no kind '{fault.kind}'{hint}")]
     try:
         given = (key for key in _KEYS if getattr(fault, key) is not None)
-        suggestions = FaultSuggestions(fault.kind, {*given})
+        suggestions = fault_suggestions(fault.kind, {*given})
         file.validated(KINDS[fault.kind].settings, dict(fault.settings), ("fault", index), suggestions)
     except UnusableFile as error:
         return list(error.reasons)

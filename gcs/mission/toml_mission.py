@@ -14,7 +14,7 @@ from gcs.config.system import SystemConfig
 from gcs.config.tables import Vector
 from gcs.config.toml_file import TomlFile, read_toml
 from gcs.config.validate import NotNegative, Positive, strict
-from gcs.mission.faults import FaultSuggestions, fault_data, fault_problems, parameter_problems
+from gcs.mission.faults import fault_data, fault_problems, fault_suggestions, parameter_problems
 from gcs.mission.items import FARTHEST, ITEM_LIMIT
 from gcs.mission.model import Fault, Limits, Lissajous, Name
 from gcs.mission.motion import WaypointsMotion
@@ -80,7 +80,7 @@ def read_mission_file(path: Path) -> tuple[TomlFile, MissionFile]:
             raise UnusableFile([file.problem((table,), use)])
     if isinstance(faults, list):
         data = {**data, "fault": [fault_data(file, i, fault) for i, fault in enumerate(faults)]}
-    mission = file.validated(MissionFile, data, suggestions=FaultSuggestions())
+    mission = file.validated(MissionFile, data, suggestions=fault_suggestions())
     problems = [problem for i, fault in enumerate(mission.fault) for problem in parameter_problems(file, i, fault)]
     if problems := [*problems, *_disagreements(file, mission)]:
         raise UnusableFile(problems)

@@ -55,15 +55,11 @@ def open_run_folder(mission_name: str, run_dir: Path | str | None = None, parent
     return folder
 
 
-def check_run_folder(run_dir: Path | str | None = None, parent: Path | str = "runs") -> None:
+def check_run_folder(run_dir: Path | str | None = None) -> None:
     """Raise :class:`UnusableInput` if :func:`open_run_folder` would, as far as that can be known; makes nothing."""
-    if run_dir is None:
-        check_writable(parent)
-        return
-    folder = Path(run_dir)
-    check_writable(folder)
-    if folder.exists() and any(folder.iterdir()):
-        raise _not_empty(folder)
+    check_writable("runs" if run_dir is None else run_dir)
+    if run_dir is not None and Path(run_dir).exists() and any(Path(run_dir).iterdir()):
+        raise _not_empty(Path(run_dir))
 
 
 def check_writable(folder: Path | str) -> None:
@@ -82,11 +78,11 @@ def check_writable(folder: Path | str) -> None:
 class NewRunFolder:
     """A run folder of :func:`open_run_folder`; a context manager that removes it again, unless it is to be kept."""
 
-    def __init__(self, mission_name: str, run_dir: Path | str | None = None, parent: Path | str = "runs") -> None:
-        wanted = Path(parent) / "flight" if run_dir is None else Path(run_dir)
+    def __init__(self, mission_name: str, run_dir: Path | str | None) -> None:
+        wanted = Path("runs/flight" if run_dir is None else run_dir)
         above = [folder for folder in wanted.parents if not folder.exists()]
         existed = wanted.exists()
-        self.path = open_run_folder(mission_name, run_dir, parent)
+        self.path = open_run_folder(mission_name, run_dir)
         self._made = above if existed else [self.path, *above]
         self._kept = False
 

@@ -119,10 +119,9 @@ def position_rmse(run: RunData, settle: float) -> dict[str, float | None]:
     Counted from ``settle`` seconds after the reference begins; None where no row is left.
     """
     time, error = position_error(run)
-    if len(time) == 0:
-        return dict.fromkeys(("x", "y", "z", "total"))
-    error = error[time >= run.reference["time_s"][0] + settle]
-    if len(error) == 0:
+    if len(time):
+        error = error[time >= run.reference["time_s"][0] + settle]
+    if not len(error):
         return dict.fromkeys(("x", "y", "z", "total"))
     mean_square = np.mean(error**2, axis=0)
     x, y, z = np.sqrt(mean_square).tolist()
@@ -156,14 +155,12 @@ def _step_times(steps: Table) -> dict[str, float | None]:
 
 def _step_parts(steps: Table) -> dict[str, dict[str, float | None]] | None:
     """Return p50 and p99 of the parts of a control step; None without a step."""
-    return (
-        None
-        if not len(steps)
-        else {
-            part: {"p50": _percentile(steps[column], 50.0), "p99": _percentile(steps[column], 99.0)}
-            for part, column in STEP_PARTS.items()
-        }
-    )
+    if not len(steps):
+        return None
+    return {
+        part: {"p50": _percentile(steps[column], 50.0), "p99": _percentile(steps[column], 99.0)}
+        for part, column in STEP_PARTS.items()
+    }
 
 
 def _solver(steps: Table) -> dict[str, float | int | None]:

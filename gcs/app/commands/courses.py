@@ -4,6 +4,7 @@ import argparse
 import dataclasses
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from rich.console import Group
 
@@ -87,13 +88,10 @@ def _random(arguments: argparse.Namespace) -> tuple[Scenarios, str]:
     if arguments.speed is not None:
         raise UnusableInput("--speed goes with --suite: random scenarios have their own speeds")
     scenarios = Scenarios(
+        **_common(arguments),
         count=arguments.count or COUNT,
-        seed=arguments.seed,
         kinds=tuple(arguments.kinds or DEFAULT_KINDS),
-        controller=arguments.controller,
-        config=arguments.config,
         fastest=arguments.obstacle_speed or FASTEST,
-        grid=arguments.grid,
     )
     return scenarios, f"seed{arguments.seed}"
 
@@ -105,15 +103,11 @@ def _suite(arguments: argparse.Namespace) -> tuple[Suite, str]:
             raise UnusableInput(f"--{option.replace('_', '-')} is for random scenarios, not for --suite")
     speed = arguments.speed or SPEED
     courses = read_suite(arguments.suite, arguments.config, speed, arguments.seed)
-    suite = Suite(
-        courses=tuple(courses),
-        seed=arguments.seed,
-        speed=speed,
-        controller=arguments.controller,
-        config=arguments.config,
-        grid=arguments.grid,
-    )
-    return suite, plain(arguments.suite[0].stem)
+    return Suite(**_common(arguments), courses=tuple(courses), speed=speed), plain(arguments.suite[0].stem)
+
+
+def _common(arguments: argparse.Namespace) -> dict[str, Any]:
+    return {name: getattr(arguments, name) for name in ("seed", "controller", "config", "grid")}
 
 
 def _run_level(generator: Scenarios | Suite, out: Path, arguments: argparse.Namespace) -> ExitStatus:

@@ -94,14 +94,12 @@ def read_campaign(path: Path) -> CampaignFile:
         if other in file.data and "campaign" not in file.data:
             raise UnusableFile([file.problem((other,), use)])
     raw = file.data.get("fault")
-    data = {key: value for key, value in file.data.items() if key != "fault"}
+    data = dict(file.data)
     if isinstance(raw, list):
         data["fault"] = [
             {key: value for key, value in table.items() if key in _OWN_KEYS} if isinstance(table, dict) else table
             for table in raw
         ]
-    elif raw is not None:
-        data["fault"] = raw
     tables = file.validated(CampaignTables, data)
     problems = [*_disagreements(file, tables)]
     cases, bad = _cases(file, tables)
