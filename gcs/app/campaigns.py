@@ -15,6 +15,7 @@ from gcs.campaign.engine import KEEP, Campaign, PlanGenerator
 from gcs.campaign.executors import WorkerProcesses
 from gcs.campaign.progress import fly_with_progress
 from gcs.campaign.result import Result
+from gcs.campaign.scenarios.levels import fly_levels, levels_report, undecided
 from gcs.campaign.tables import failed_flights, headline
 from gcs.errors import UnusableInput
 from gcs.extras import extra
@@ -42,27 +43,38 @@ def campaign_console() -> Console:
     return console
 
 
-def run_campaign(generator: PlanGenerator, out: Path, arguments: argparse.Namespace) -> ExitStatus:
-    """Fly a campaign in the folder ``out``, and print its report."""
-    console = campaign_console()
-    interrupted = False
+def run_campaign(
+    generator: PlanGenerator, out: Path, arguments: argparse.Namespace, planning: PlanGenerator | None = None
+) -> ExitStatus:
+    """Fly a campaign in the folder ``out``, and print its report.
+
+    ``planning``: the same flights on the planning level, in a folder within, which decides what is flown in full.
+    """
+    console, interrupted = campaign_console(), False
     with executor_of(arguments) as executor:
         with console.status("writing the missions"):
             campaign = Campaign(generator, out, arguments.keep)
+            planned = None if planning is None else Campaign(planning, out / "planning", arguments.keep)
         try:
-            fly_with_progress(campaign, executor, console)
+            if planned is None:
+                fly_with_progress(campaign, executor, console)
+            else:
+                fly_levels(planned, campaign, arguments.budget, executor, console)
         except KeyboardInterrupt:
             interrupted = True
-    results = campaign.results
+    results = judged = campaign.results
     problems = generator.problems(results)
     reported = not results or report(generator, results, problems, out, console)
+    if planned is not None:
+        console.print(Group(*levels_report(planned.results, results)))
+        judged = [*results, *undecided(planned.results, results)]
     if interrupted:
-        left = len(campaign.plans) - len(results)
-        LOG.error("interrupted with %d flights to go: start the command again to resume", left)
+        left = f" with {len(campaign.plans) - len(results)} flights to go" if planned is None else ""
+        LOG.error("interrupted%s: start the command again to resume", left)
         return ExitStatus.INTERRUPTED
     if not reported:
         return ExitStatus.INCOMPLETE
-    return ExitStatus.OUTSIDE_LIMITS if problems or not all(result.passed for result in results) else ExitStatus.DONE
+    return ExitStatus.OUTSIDE_LIMITS if problems or not all(result.passed for result in judged) else ExitStatus.DONE
 
 
 def executor_of(arguments: argparse.Namespace) -> AbstractContextManager[Executor]:

@@ -43,8 +43,8 @@ from gcs.numerics import differences
 from gcs.record.incomplete import Incomplete, read_line
 from gcs.record.recorder import FlightRecorder
 from gcs.record.run_data import RunData, read_run
-from gcs.record.run_folder import SUMMARY, NewRunFolder, UnwritableFile, write_manifest
-from gcs.record.summary import summarise, within_limits, write_summary
+from gcs.record.run_folder import SUMMARY, NewRunFolder, UnwritableFile, write_json, write_manifest
+from gcs.record.summary import summarise, within_limits
 from gcs.record.tables import TRUTH
 from gcs.record.verdict import GroundReport, verdict
 from idc_controller.guidance.progress import Guidance
@@ -213,7 +213,7 @@ def flight_result(
     if not truth_ends:
         summary["landing"] = None  # it is not on record
     try:
-        write_summary(run_dir, summary)
+        write_json(run_dir / SUMMARY, summary)
     except UnwritableFile as error:
         incomplete = (*incomplete, Incomplete(SUMMARY, None, error.cause.strerror or str(error.cause)))
     records = records.with_summary(summary)

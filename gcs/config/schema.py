@@ -1,4 +1,4 @@
-"""Schema of declared settings: a validator by which pydantic reads them strictly, and a listing.
+"""Schema of declared settings: a validator by which pydantic reads them strictly.
 
 A table of the system file is a frozen dataclass. Its fields are keys, those that are such dataclasses tables within the
 table, except what is ``derived`` from other settings. Those declared with :func:`idc_controller.settings.setting` are
@@ -26,17 +26,7 @@ from pydantic_core.core_schema import (
 )
 
 from idc_controller.errors import ParameterError
-from idc_controller.settings import DERIVED_KEY, METADATA_KEY, Setting, SettingsTable, Share
-
-
-@dataclasses.dataclass(frozen=True)
-class ListedSetting:
-    """One setting with its table and key in the system file."""
-
-    table: str
-    key: str
-    default: Any
-    setting: Setting
+from idc_controller.settings import DERIVED_KEY, METADATA_KEY, SettingsTable, Share
 
 
 @cache
@@ -65,15 +55,6 @@ def _table_schema(cls: type[Any]) -> CoreSchema:
         for name, hint, field in _keys(cls)
     }
     return no_info_after_validator_function(construct, typed_dict_schema(keys, extra_behavior="forbid"))
-
-
-def listed_settings(cls: type[Any], table: str = "") -> Iterator[ListedSetting]:
-    """Yield every setting that is declared as such below the dataclass ``cls``, in the order of its declaration."""
-    for name, hint, field in _keys(cls):
-        if _is_table(hint):
-            yield from listed_settings(hint, f"{table}.{name}" if table else name)
-        elif METADATA_KEY in field.metadata:
-            yield ListedSetting(table, name, _default(field), field.metadata[METADATA_KEY])
 
 
 def paths(cls: type[Any], table: str = "") -> Iterator[str]:

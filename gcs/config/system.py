@@ -26,7 +26,7 @@ from gcs.config.tables import (
     UavConfig,
     WorldConfig,
 )
-from gcs.config.toml_file import TomlFile, read_toml
+from gcs.config.toml_file import ParsedFile, read_toml
 from gcs.config.validate import Key, UnusableFile
 from gcs.config.vehicle_settings import AutopilotSettings, VehicleLinkSettings
 from gcs.errors import UnusableInput
@@ -208,7 +208,7 @@ def read_system(path: Path | None = None) -> SystemConfig:
     return system_of(file)
 
 
-def system_of(file: TomlFile) -> SystemConfig:
+def system_of(file: ParsedFile) -> SystemConfig:
     """Return the system of a parsed file. Raises :class:`UnusableFile` as :func:`read_system` does."""
     config: SystemConfig = file.validated(table_validator(SystemConfig))
     if problems := _disagreements(config, file):
@@ -221,7 +221,7 @@ def system_of(file: TomlFile) -> SystemConfig:
     return config
 
 
-def _cause(config: SystemConfig, file: TomlFile) -> Key:
+def _cause(config: SystemConfig, file: ParsedFile) -> Key:
     """Return the key of a number with whose default the system could fly; the team where no single one is the cause."""
     for table in fields(config):
         for key in file.data.get(table.name, ()):
@@ -235,7 +235,7 @@ def _cause(config: SystemConfig, file: TomlFile) -> Key:
     return ("team",)
 
 
-def _disagreements(config: SystemConfig, file: TomlFile) -> list[str]:
+def _disagreements(config: SystemConfig, file: ParsedFile) -> list[str]:
     """Return what is wrong between keys, one line each."""
     rates, team, motion = config.rates, config.team, config.motion
     found: list[tuple[tuple[str, str], str]] = []

@@ -15,13 +15,13 @@ _ENTRY = re.compile(r"""^\s*([A-Za-z0-9_."'-]+(?:\s*\.\s*[A-Za-z0-9_"'-]+)*)\s*=
 
 
 @dataclass(frozen=True)
-class TomlFile:
-    """A parsed TOML file that knows the line of every key."""
+class ParsedFile:
+    """A parsed file of tables (TOML, YAML) that knows the line of every key."""
 
     path: Path
     data: dict[str, Any]
     lines: dict[Key, int] = field(repr=False)
-    """Line (from 1) of every table header and key; arrays of tables carry their index: ("obstacle", 0, "radius")."""
+    """Line (from 1) of every table header and key; arrays carry their index: ("obstacle", 0, "radius")."""
 
     def line(self, key: Sequence[str | int]) -> int:
         """Return the line of a key, or of the nearest table around it."""
@@ -54,7 +54,7 @@ class TomlFile:
         )
 
 
-class GivenTables(TomlFile):
+class GivenTables(ParsedFile):
     """Tables that a program has given, in place of a file; ``path`` is what messages call them."""
 
     def problem(self, key: Sequence[str | int], reason: str) -> str:
@@ -62,7 +62,7 @@ class GivenTables(TomlFile):
         return f"{self.path}: {dotted(key)}: {reason}"
 
 
-def read_toml(path: Path) -> TomlFile:
+def read_toml(path: Path) -> ParsedFile:
     """Parse a TOML file. Raises :class:`UnusableFile` with the line of a syntax error."""
     text = read_text(path)
     try:
@@ -73,7 +73,7 @@ def read_toml(path: Path) -> TomlFile:
         at = re.search(r"^(.*) \(at (?:line (\d+), column \d+|end of document)\)$", str(error), re.DOTALL)
         line = (at[2] or len(text.splitlines())) if at else 1
         raise UnusableFile([f"{path}: line {line}: not valid TOML: {at[1] if at else why_unparsed(error)}"]) from error
-    return TomlFile(path, data, _lines_of_keys(text))
+    return ParsedFile(path, data, _lines_of_keys(text))
 
 
 def _lines_of_keys(text: str) -> dict[Key, int]:

@@ -19,12 +19,27 @@ from idc_controller.geometry.formation import Formation
 from idc_controller.safety.obstruction import Obstruction, obstruction
 
 
-def _first_vehicle(system: System, problem: Callable[[VehicleLink], str]) -> Trigger | None:
-    """Return the trigger of the first vehicle with a problem: the text that follows its name."""
-    for i, link in enumerate(system.team.links):
-        if text := problem(link):
-            return Trigger(f"vehicle {link.system_id} {text}", (i,))
-    return None
+def _of_a_vehicle(problem: Callable[[VehicleLink], str]) -> Condition:
+    """Return the condition that a vehicle has a ``problem``, the text that follows its name; the first one counts."""
+
+    def condition(system: System, moment: Moment) -> Trigger | None:
+        for i, link in enumerate(system.team.links):
+            if text := problem(link):
+                return Trigger(f"vehicle {link.system_id} {text}", (i,))
+        return None
+
+    return condition
+
+
+_already_armed = _of_a_vehicle(
+    lambda link: "is armed already: another ground station may be flying it" if link.status.armed else ""
+)
+_prearm_check_failed = _of_a_vehicle(
+    lambda link: "" if link.status.prearm_ok else f"fails its pre-arm checks{link.status.last_text}"
+)
+_disarmed_in_flight = _of_a_vehicle(
+    lambda link: "" if link.status.armed else f"has disarmed itself{link.status.last_text}"
+)
 
 
 def _connect_timeout(system: System, moment: Moment) -> Trigger | None:
@@ -64,18 +79,7 @@ def _parameter_mismatch(system: System, moment: Moment) -> Trigger | None:
                 return f"has {name} = {reported:g}, the system file says {value:g}"
         return ""
 
-    return _first_vehicle(system, problem)
-
-
-def _already_armed(system: System, moment: Moment) -> Trigger | None:
-    text = "is armed already: another ground station may be flying it"
-    return _first_vehicle(system, lambda link: text if link.status.armed else "")
-
-
-def _prearm_check_failed(system: System, moment: Moment) -> Trigger | None:
-    return _first_vehicle(
-        system, lambda link: "" if link.status.prearm_ok else f"fails its pre-arm checks{link.status.last_text}"
-    )
+    return _of_a_vehicle(problem)(system, moment)
 
 
 def _position_unknown(system: System, moment: Moment) -> Trigger | None:
@@ -164,12 +168,6 @@ def _link_latency_exceeded(system: System, moment: Moment) -> Trigger | None:
             text = f"link latency to vehicle {link.system_id} is {latency * 1e3:.0f} ms (limit {limit * 1e3:.0f} ms)"
             return Trigger(text, (i,), latency)
     return None
-
-
-def _disarmed_in_flight(system: System, moment: Moment) -> Trigger | None:
-    return _first_vehicle(
-        system, lambda link: "" if link.status.armed else f"has disarmed itself{link.status.last_text}"
-    )
 
 
 def _offboard_left(system: System, moment: Moment) -> Trigger | None:

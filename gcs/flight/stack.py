@@ -1,14 +1,14 @@
 """From a system file to the mathematics that flies it: model, estimator and controller."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 import numpy as np
 
 from gcs.config import RangeSensorConfig, SystemConfig
-from gcs.mission.known_obstacles import map_of
-from gcs.mission.model import Mission
+from gcs.mission.fence import boundary_walls
+from gcs.mission.model import Mission, Obstacle
 from idc_controller.control.controller import IntegratedDecisionController
 from idc_controller.control.mpc import ModelPredictiveController
 from idc_controller.estimation.estimator import Estimator
@@ -26,6 +26,7 @@ from idc_controller.perception.range_sensors import SensorModel
 from idc_controller.perception.ray_pattern import RayPattern
 from idc_controller.perception.scan_placement import SensorRays
 from idc_controller.perception.settings import PerceptionSettings
+from idc_controller.perception.standing_obstacles import MapObstacle
 from idc_controller.safety.filter_protocol import SafetyFilter
 from idc_controller.safety.give_way import give_way_time
 from idc_controller.safety.safety_filter import AvoidanceFilter
@@ -65,6 +66,21 @@ def obstacle_map(mission: Mission) -> ObstacleMap:
     return ObstacleMap(
         map_of(mission), sensors, config.range_sensor.range, sensor_rays(config.range_sensor), perception(config)
     )
+
+
+def map_of(mission: Mission) -> list[MapObstacle]:
+    """Return the obstacles that a mission marks as known, and the walls of its fence."""
+    edges = (edge._replace(is_body=False) for edge in known_obstacles(boundary_walls(mission.boundary)))
+    return [*known_obstacles(mission.obstacles), *edges]
+
+
+def known_obstacles(obstacles: Iterable[Obstacle]) -> list[MapObstacle]:
+    """Return those of ``obstacles`` that are marked as known."""
+    return [
+        MapObstacle(obstacle.name, obstacle.shape, np.array(obstacle.position), obstacle.motion is not None)
+        for obstacle in obstacles
+        if obstacle.known
+    ]
 
 
 def sensor_rays(sensor: RangeSensorConfig) -> SensorRays:

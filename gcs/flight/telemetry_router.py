@@ -76,7 +76,7 @@ class TelemetryRouter:
         for (datagram, sender), (messages, unread) in zip(datagrams, read, strict=True):
             if unread > self._unread:
                 self._unread = unread
-                if (link := self._link_at(sender)) is not None:
+                if (link := next((link for link in self._links if link.address == sender), None)) is not None:
                     link.statistics.damaged += 1
             if self._take(messages, len(datagram), sender, now, routed):
                 known.append(datagram)
@@ -118,9 +118,6 @@ class TelemetryRouter:
                 if stamped and link.clock.known:
                     self._route(stamped, index, now, routed)
         return bool(groups)
-
-    def _link_at(self, address: Address) -> VehicleLink | None:
-        return next((link for link in self._links if link.address == address), None)
 
     def _enter(self, index: int, address: Address) -> None:
         """Take what a vehicle sends from its address, and what it, or the first of several there, forwards."""

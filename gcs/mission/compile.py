@@ -28,6 +28,8 @@ from gcs.mission.route import Climb, Descend, Go, Jump, Place, Return, Route, Sp
 
 LOITER_RADIUS = 5.0
 """m, of loiter turns without a radius."""
+_WITH_HEADING = (Command.NAV_WAYPOINT, Command.NAV_LOITER_UNLIM, Command.NAV_LAND, Command.NAV_TAKEOFF)
+"""Commands whose param 4 is a heading."""
 HIGH_CLIMB = 120.0
 """m above home. Higher, an altitude above mean sea level may be one above another home."""
 
@@ -91,6 +93,8 @@ def _step(item: MissionItem, context: _Context) -> Step | None:
     if item.command in FENCE_AND_RALLY:
         raise ItemError("command", "a fence or rally point, not a mission")
     if (make := _COMMANDS.get(item.command)) is not None:
+        if item.command in _WITH_HEADING and item.params[3]:
+            context.note(item, f"heading {item.params[3]:g} deg left out: the payload keeps its heading")
         return make(item, context)
     if item.command in LEFT_OUT:
         context.note(item, "left out")
@@ -188,26 +192,11 @@ def _whole(item: MissionItem, index: int, name: str) -> int:
     return int(value)
 
 
-def _note_heading(item: MissionItem, context: _Context) -> None:
-    if item.params[3]:
-        context.note(item, f"heading {item.params[3]:g} deg left out: the payload keeps its heading")
-
-
 # Commands -------------------------------------------------------------------------------------------------------
 
 
 def _go(item: MissionItem, context: _Context) -> Go:
     return Go(item.label, _place(item, context), _seconds(item))
-
-
-def _waypoint(item: MissionItem, context: _Context) -> Step:
-    _note_heading(item, context)
-    return _go(item, context)
-
-
-def _loiter_unlimited(item: MissionItem, context: _Context) -> Step:
-    _note_heading(item, context)
-    return Stay(item.label, _place(item, context))
 
 
 def _loiter_turns(item: MissionItem, context: _Context) -> Step:
@@ -223,7 +212,6 @@ def _loiter_turns(item: MissionItem, context: _Context) -> Step:
 
 
 def _land(item: MissionItem, context: _Context) -> Step:
-    _note_heading(item, context)
     altitude = item.params[6]
     if altitude and item.frame != Frame.MISSION:
         height = _above_home(item, altitude, context)
@@ -233,7 +221,6 @@ def _land(item: MissionItem, context: _Context) -> Step:
 
 
 def _take_off(item: MissionItem, context: _Context) -> Step:
-    _note_heading(item, context)
     altitude, resting = item.params[6], context.system.resting_altitude
     if altitude is None:
         raise ItemError("altitude", "not given: a take-off needs one")
@@ -298,10 +285,10 @@ def _jump(item: MissionItem, indices_of: dict[int, list[int]], name: str, contex
 
 
 _COMMANDS: dict[int, Callable[[MissionItem, _Context], Step | None]] = {
-    Command.NAV_WAYPOINT: _waypoint,
+    Command.NAV_WAYPOINT: _go,
     Command.NAV_SPLINE_WAYPOINT: lambda item, context: replace(_go(item, context), spline=True),
     Command.CONDITION_GATE: lambda item, context: Go(item.label, _place(item, context)),
-    Command.NAV_LOITER_UNLIM: _loiter_unlimited,
+    Command.NAV_LOITER_UNLIM: lambda item, context: Stay(item.label, _place(item, context)),
     Command.NAV_LOITER_TURNS: _loiter_turns,
     Command.NAV_LOITER_TIME: _go,
     Command.NAV_LOITER_TO_ALT: _loiter_to_altitude,

@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 from gcs.config import SystemConfig, UnusableFile
-from gcs.config.toml_file import TomlFile
+from gcs.config.toml_file import ParsedFile
 from gcs.config.validate import Key, Suggestions
 from gcs.errors import UnusableInput
 from gcs.mission.model import Fault, Mission
@@ -30,7 +30,7 @@ def fault_suggestions(kind: str = "", own: Collection[str] = ()) -> Suggestions:
     return Suggestions(key_meant, value_meant)
 
 
-def fault_data(file: TomlFile, index: int, table: Any) -> Any:
+def fault_data(file: ParsedFile, index: int, table: Any) -> Any:
     """Return the table of the file's fault ``index`` (from 0) as :class:`Fault` is read from it."""
     if not isinstance(table, Mapping):
         return table
@@ -38,7 +38,7 @@ def fault_data(file: TomlFile, index: int, table: Any) -> Any:
     return {k: table[k] for k in _KEYS if k in table} | {"settings": settings, "line": file.line(("fault", index))}
 
 
-def read_fault(file: TomlFile, index: int, table: Mapping[str, Any]) -> Fault:
+def read_fault(file: ParsedFile, index: int, table: Mapping[str, Any]) -> Fault:
     """Return the fault of ``table``, which is the file's fault ``index`` (from 0).
 
     Raises :class:`UnusableFile` for unknown kinds and keys and for wrong values; whether the fault agrees with itself
@@ -50,7 +50,7 @@ def read_fault(file: TomlFile, index: int, table: Mapping[str, Any]) -> Fault:
     return fault
 
 
-def parameter_problems(file: TomlFile, index: int, fault: Fault) -> list[str]:
+def parameter_problems(file: ParsedFile, index: int, fault: Fault) -> list[str]:
     """Return every reason against the kind of the file's fault ``index`` and its parameters."""
     from gcs.faults import KINDS  # the kinds take long to import, spent only where there are faults
 

@@ -8,7 +8,7 @@ from typing import Any
 from gcs.config import SystemConfig, UnusableFile, read_system
 from gcs.config.overrides import with_settings
 from gcs.config.text_file import read_text
-from gcs.config.toml_file import TomlFile
+from gcs.config.toml_file import ParsedFile
 from gcs.config.validate import Key
 from gcs.mission.model import DEFAULT_HOME, Home, Lissajous, Mission
 from gcs.mission.own import named
@@ -122,7 +122,7 @@ def _capped(name: str, speed: float | None, system: SystemConfig) -> tuple[float
     return speed, ()
 
 
-def _beside(file: TomlFile, key: Key, name: str) -> Path:
+def _beside(file: ParsedFile, key: Key, name: str) -> Path:
     """Return the path of a file that stands beside the mission that names it."""
     path = file.path.parent / name
     if not path.is_file():

@@ -12,7 +12,7 @@ from pydantic import Field
 from gcs.config import UnusableFile
 from gcs.config.system import SystemConfig
 from gcs.config.tables import Vector
-from gcs.config.toml_file import TomlFile, read_toml
+from gcs.config.toml_file import ParsedFile, read_toml
 from gcs.config.validate import NotNegative, Positive, strict
 from gcs.mission.faults import fault_data, fault_problems, fault_suggestions, parameter_problems
 from gcs.mission.items import FARTHEST, ITEM_LIMIT
@@ -68,7 +68,7 @@ _OTHER_FILES = {
 }
 
 
-def read_mission_file(path: Path) -> tuple[TomlFile, MissionFile]:
+def read_mission_file(path: Path) -> tuple[ParsedFile, MissionFile]:
     """Read and check the tables of a mission, without the files it names.
 
     Raises :class:`UnusableFile` with every reason found.
@@ -87,7 +87,7 @@ def read_mission_file(path: Path) -> tuple[TomlFile, MissionFile]:
     return file, mission
 
 
-def points_route(file: TomlFile, table: WaypointsTable, speed: float, system: SystemConfig) -> Route:
+def points_route(file: ParsedFile, table: WaypointsTable, speed: float, system: SystemConfig) -> Route:
     """Return the route through ``points``. Raises :class:`UnusableFile` for points that cannot be flown to."""
     points = table.points or ()
     if found := unreachable(points, system):
@@ -117,7 +117,7 @@ def route_through(
     return Route(tuple(steps), speed, system.resting_altitude)
 
 
-def check_with_system(file: TomlFile, mission: MissionFile, system: SystemConfig) -> None:
+def check_with_system(file: ParsedFile, mission: MissionFile, system: SystemConfig) -> None:
     """Raise :class:`UnusableFile` for an altitude or for faults that do not agree with the system."""
     problems = [
         file.problem(("fault", i, key), reason)
@@ -131,7 +131,7 @@ def check_with_system(file: TomlFile, mission: MissionFile, system: SystemConfig
         raise UnusableFile(problems)
 
 
-def _disagreements(file: TomlFile, mission: MissionFile) -> Iterator[str]:
+def _disagreements(file: ParsedFile, mission: MissionFile) -> Iterator[str]:
     reference = mission.reference
     if isinstance(reference, WaypointsTable):
         if (reference.file is None) == (reference.points is None):

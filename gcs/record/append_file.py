@@ -34,7 +34,7 @@ class AppendOnlyFile:
         self._incomplete = incomplete or IncompleteRecords()
         self._head = head
         self._whole = 0
-        self._closed = False
+        self.closed = False
         self._descriptor: int | None = None
         if when_needed:
             return
@@ -46,14 +46,9 @@ class AppendOnlyFile:
             self.close()
             raise UnusableInput(f"{self.path}: cannot be written: {error.strerror}") from None
 
-    @property
-    def closed(self) -> bool:
-        """True if it takes no more records."""
-        return self._closed
-
     def append(self, record: bytes) -> None:
         """Append one record; does nothing once the file is closed or has failed."""
-        if self._closed or self.error is not None:
+        if self.closed or self.error is not None:
             return
         try:
             if self._descriptor is None:
@@ -66,7 +61,7 @@ class AppendOnlyFile:
 
     def close(self) -> None:
         """Close the file; harmless when it is closed already."""
-        self._closed = True
+        self.closed = True
         descriptor, self._descriptor = self._descriptor, None
         if descriptor is None:
             return

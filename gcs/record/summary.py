@@ -1,7 +1,6 @@
 """``summary.json``: the figures of a flight, computed after it from its records."""
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,7 @@ from gcs.record.outcome import Outcome
 from gcs.record.reader import Table
 from gcs.record.result import LIMITS, result_rows
 from gcs.record.run_data import RunData, position_error
-from gcs.record.run_folder import FORMAT, SUMMARY, write_json
+from gcs.record.run_folder import FORMAT
 from gcs.record.safety import safety_figures
 from gcs.record.verdict import Verdict
 from idc_controller.arrays import Array
@@ -96,11 +95,6 @@ def summarise(
         }
     )
     return summary
-
-
-def write_summary(run_dir: Path | str, summary: Mapping[str, Any]) -> Path:
-    """Write ``summary.json`` (strict JSON: what is not known is null). Raises :class:`UnwritableFile`."""
-    return write_json(Path(run_dir) / SUMMARY, summary)
 
 
 def within_limits(summary: Mapping[str, Any]) -> bool:

@@ -52,7 +52,8 @@ def test_campaign_writes_a_mission_file_for_each_flight(tmp_path):
 @pytest.mark.parametrize("name", ["square.waypoints", "fenced_delivery.plan", "pole_course.toml"])
 def test_mission_made_of_another_differs_only_in_name_seed_and_faults(name, tmp_path):
     base = read_base(MISSIONS / name)
-    base.write_files(tmp_path)
+    for file, text in base.files.items():
+        (tmp_path / file).write_text(text, encoding="utf-8")
     fault = Fault("packet_loss", 1.0, vehicles=(1, 2), settings={"probability": 0.2})
     (tmp_path / "made.toml").write_text(base.text('a "new"\x7f \N{DUCK}', 5, [fault]))
     made, read = read_mission(tmp_path / "made.toml"), read_mission(MISSIONS / name)
@@ -158,7 +159,8 @@ def test_campaign_file_is_refused_with_reasons_of_its_mission(tmp_path):
 
 def test_mission_made_of_another_takes_the_mesh_of_an_obstacle_along(tmp_path):
     base = read_base(MISSIONS / "unknown_rock.toml")
-    base.write_files(tmp_path)
+    for file, text in base.files.items():
+        (tmp_path / file).write_text(text, encoding="utf-8")
     (tmp_path / "made.toml").write_text(base.text("made"))
     made, read = (read_mission(path).obstacles[0] for path in (tmp_path / "made.toml", MISSIONS / "unknown_rock.toml"))
     corners = [np.array(sorted(obstacle.shape.file.corners)) for obstacle in (made, read)]

@@ -6,12 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from settings_page import settings_page
+from settings_page import ListedSetting, listed_settings, settings_page
 from standing_obstacles import StandingObstacles
 
 from gcs.campaign.toml_text import tables_text
 from gcs.config import SystemConfig, UnusableFile, read_system
-from gcs.config.schema import ListedSetting, listed_settings
 from gcs.errors import UnusableInput
 from gcs.flight import stack
 from idc_controller.control.mpc import ModelPredictiveController
@@ -75,7 +74,7 @@ def test_system_is_read_back_from_its_own_tables(tmp_path: Path) -> None:
     assert read_system(path) == config
 
 
-@pytest.mark.parametrize("listed", [*listed_settings(SystemConfig)], ids=lambda listed: f"{listed.table}.{listed.key}")
+@pytest.mark.parametrize("listed", [*listed_settings()], ids=lambda listed: f"{listed.table}.{listed.key}")
 def test_setting_outside_its_bounds_is_refused(tmp_path: Path, listed: ListedSetting) -> None:
     declared = listed.setting
     outside = []

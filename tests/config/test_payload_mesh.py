@@ -256,7 +256,8 @@ def test_run_records_the_hull_of_the_payload(tmp_path: Path) -> None:
 
 def test_mission_copied_for_a_campaign_takes_its_payload_along(tmp_path: Path) -> None:
     base = read_base(MISSIONS / "l_payload_course.toml")
-    base.write_files(tmp_path)
+    for file, text in base.files.items():
+        (tmp_path / file).write_text(text, encoding="utf-8")
     copied = read_system(tmp_path / base.tables["mission"]["system"]).parameters()
     np.testing.assert_allclose(copied.J_0, read_system(L_SYSTEM).parameters().J_0, rtol=1e-12)
     np.testing.assert_allclose(copied.p, read_system(L_SYSTEM).parameters().p, rtol=1e-12)

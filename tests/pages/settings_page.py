@@ -1,11 +1,12 @@
 """``docs/settings.md``, written from the declarations: ``python tests/pages/settings_page.py`` prints it."""
 
+from collections.abc import Iterator
+from dataclasses import dataclass, fields
 from itertools import groupby
 from typing import Any
 
-from gcs.config.schema import listed_settings
 from gcs.config.system import SystemConfig
-from idc_controller.settings import Setting
+from idc_controller.settings import DERIVED_KEY, METADATA_KEY, Setting, SettingsTable
 
 _INTRODUCTION = """\
 # Settings
@@ -20,10 +21,33 @@ This page is written from the declarations by `make docs`.
 """
 
 
+@dataclass(frozen=True)
+class ListedSetting:
+    """One setting with its table and key in the system file."""
+
+    table: str
+    key: str
+    default: Any
+    setting: Setting
+
+
+def listed_settings(values: Any = None, table: str = "") -> Iterator[ListedSetting]:
+    """Yield every setting that is declared as such, in the order of declaration."""
+    values = SystemConfig() if values is None else values
+    for field in fields(values):
+        value = getattr(values, field.name)
+        if DERIVED_KEY in field.metadata:
+            continue
+        if isinstance(value, SettingsTable):
+            yield from listed_settings(value, f"{table}.{field.name}" if table else field.name)
+        elif METADATA_KEY in field.metadata:
+            yield ListedSetting(table, field.name, value, field.metadata[METADATA_KEY])
+
+
 def settings_page() -> str:
     """Return the page: a table of key, default, unit, range and meaning for each table of the system file."""
     parts = [_INTRODUCTION]
-    for table, listed in groupby(listed_settings(SystemConfig), lambda listed: listed.table):
+    for table, listed in groupby(listed_settings(), lambda listed: listed.table):
         rows = [
             f"| `{entry.key}` | {_value(entry.default)} | {entry.setting.unit} | {_range(entry.setting)} "
             f"| {entry.setting.meaning} |"

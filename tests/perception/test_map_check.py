@@ -19,8 +19,7 @@ from obstacle_scene import (
 )
 
 from gcs.config import RangeSensorConfig
-from gcs.flight.stack import sensor_rays
-from gcs.mission.known_obstacles import known_obstacles
+from gcs.flight.stack import known_obstacles, sensor_rays
 from gcs.mission.model import Obstacle
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole

@@ -22,8 +22,8 @@ from truth_rows import write_state
 from gcs.record import summary as summaries
 from gcs.record.outcome import Outcome
 from gcs.record.run_data import read_run
-from gcs.record.run_folder import FORMAT, open_run_folder, write_manifest
-from gcs.record.summary import within_limits, write_summary
+from gcs.record.run_folder import FORMAT, SUMMARY, open_run_folder, write_json, write_manifest
+from gcs.record.summary import within_limits
 from gcs.record.summary_table import print_summary
 from gcs.record.tables import ESTIMATE_COLUMNS, TableWriter
 from gcs.record.verdict import Verdict
@@ -190,12 +190,12 @@ def test_flight_without_take_off_has_a_summary(folder):
     summary = summarise(folder, failed, real_time_factor=None, limits={"payload_tilt_deg": 5.0})
     assert summary["payload_tilt_max_deg"] == {"roll": None, "pitch": None, "yaw": None}
     assert not within_limits(summary)
-    write_summary(folder, summary)
+    write_json(folder / SUMMARY, summary)
     assert "failed" in printed(summary, folder)
 
 
 def test_summary_is_strict_json(run):
-    path = write_summary(run, summarise(run, real_time_factor=float("nan"), limits={"clearance": 0.3}))
+    path = write_json(run / SUMMARY, summarise(run, real_time_factor=float("nan"), limits={"clearance": 0.3}))
     assert path.name == "summary.json"
     content = json.loads(path.read_text(), parse_constant=pytest.fail)
     assert content["real_time_factor"] is None

@@ -7,8 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gcs.config import RangeSensorConfig
-from gcs.flight.stack import sensor_rays
-from gcs.mission.known_obstacles import known_obstacles
+from gcs.flight.stack import known_obstacles, sensor_rays
 from idc_controller.estimation.measurements import Attitude, Position, VehicleStates
 from idc_controller.geometry.box import Box, Wall
 from idc_controller.geometry.obstacles import Bodies

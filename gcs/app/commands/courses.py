@@ -6,17 +6,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rich.console import Group
-
 from gcs.app.arguments import CONTROLLERS, SettingsGrid, number, time_span, whole_number
-from gcs.app.campaigns import add_campaign_arguments, campaign_console, executor_of, report, run_campaign
+from gcs.app.campaigns import add_campaign_arguments, run_campaign
 from gcs.app.exit_status import ExitStatus
-from gcs.app.logs import LOG
-from gcs.campaign.engine import Campaign
 from gcs.campaign.folder import adopt_folder, plain
 from gcs.campaign.grid import check_grid
 from gcs.campaign.scenarios.generator import DEFAULT_KINDS, KINDS
-from gcs.campaign.scenarios.levels import fly_levels, levels_report, undecided
 from gcs.campaign.scenarios.plans import Scenarios
 from gcs.campaign.suites.plans import Suite, read_suite
 from gcs.config import read_system
@@ -41,7 +36,8 @@ formation, it is passed if the flight is broken off and its reason names the nar
 """
 
 COUNT, FASTEST, SPEED = 200, 2.0, 2.5
-PLANNING, FULL, BOTH = LEVELS = ("planning", "full", "both")
+LEVELS = ("planning", "full", "both")
+_, FULL, BOTH = LEVELS
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -114,26 +110,8 @@ def _run_level(generator: Scenarios | Suite, out: Path, arguments: argparse.Name
     """Fly on ``arguments.level``, and print the report. The planning level has a folder of its own in ``out``."""
     if arguments.level == FULL:
         return run_campaign(generator, out, arguments)
-    on_planning, folder = dataclasses.replace(generator, planning=True), out / "planning"
-    if arguments.level == PLANNING:
-        adopt_folder(out, generator.settings)
-        return run_campaign(on_planning, folder, arguments)
-    console, interrupted = campaign_console(), False
-    with executor_of(arguments) as executor:
-        with console.status("writing the missions"):
-            full = Campaign(generator, out, arguments.keep)
-            planning = Campaign(on_planning, folder, arguments.keep)
-        try:
-            fly_levels(planning, full, arguments.budget, executor, console)
-        except KeyboardInterrupt:
-            interrupted = True
-    planned, flown = planning.results, full.results
-    reported = not flown or report(generator, flown, (), out, console)
-    console.print(Group(*levels_report(planned, flown)))
-    if interrupted:
-        LOG.error("interrupted: start the command again to resume")
-        return ExitStatus.INTERRUPTED
-    if not reported:
-        return ExitStatus.INCOMPLETE
-    passed = all(result.passed for result in (*flown, *undecided(planned, flown)))
-    return ExitStatus.DONE if passed else ExitStatus.OUTSIDE_LIMITS
+    planning = dataclasses.replace(generator, planning=True)
+    if arguments.level == BOTH:
+        return run_campaign(generator, out, arguments, planning)
+    adopt_folder(out, generator.settings)
+    return run_campaign(planning, out / "planning", arguments)

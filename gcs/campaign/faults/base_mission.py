@@ -1,12 +1,12 @@
 """Missions made of a mission: with another seed, with faults, with other limits, as files that ``gcs fly`` repeats."""
 
 import dataclasses
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from gcs.campaign.folder import digest, write_text
+from gcs.campaign.folder import digest
 from gcs.campaign.toml_text import tables_text
 from gcs.config.mesh_file import read_mesh
 from gcs.config.system import SystemConfig
@@ -14,7 +14,6 @@ from gcs.config.text_file import read_text
 from gcs.config.toml_file import read_toml
 from gcs.mission.model import Fault, Limits
 from gcs.mission.read import mission_format, read_mission
-from gcs.record.run_folder import make_folder
 
 _NAME = 200  # characters, the longest that a mission may have
 
@@ -46,12 +45,6 @@ class BaseMission:
             tables["limits"] = {key: value for key, value in dataclasses.asdict(limits).items() if value is not None}
         return tables_text(tables)
 
-    def write_files(self, folder: Path) -> None:
-        """Write the files that the mission needs beside it. Raises :class:`UnusableInput` where it cannot."""
-        make_folder(folder)
-        for name, text in self.files.items():
-            write_text(folder / name, text)
-
 
 def read_base(path: Path) -> BaseMission:
     """Read a mission of any format. Raises :class:`gcs.config.UnusableFile` like :func:`read_mission`."""
@@ -79,18 +72,17 @@ def read_base(path: Path) -> BaseMission:
         system_tables["payload"]["mesh"] = copied_mesh(mesh.path)
     system = copied(Path("system.toml"), tables_text(system_tables))
     if obstacles := tables.get("obstacle"):
-        tables = {**tables, "obstacle": [_with_mesh(table, path.parent, copied_mesh) for table in obstacles]}
+        copied_files = [
+            {**table, "file": copied_mesh(path.parent / table["file"])} if "file" in table else table
+            for table in obstacles
+        ]
+        tables = {**tables, "obstacle": copied_files}
     tables = {**tables, "mission": {**tables["mission"], "system": system}}
     if "file" in tables["reference"]:
         source = path.parent / tables["reference"]["file"]
         file = copied(source, read_text(source))
         tables["reference"] = {**tables["reference"], "file": file}
     return BaseMission(mission.name, mission.seed, mission.system, tables, files)
-
-
-def _with_mesh(obstacle: dict[str, Any], folder: Path, copied: Callable[[Path], str]) -> dict[str, Any]:
-    """Return the table of an obstacle; if its shape is a mesh file in ``folder``, with the name of the copy."""
-    return {**obstacle, "file": copied(folder / obstacle["file"])} if "file" in obstacle else obstacle
 
 
 def fault_table(fault: Fault | Mapping[str, Any]) -> dict[str, Any]:

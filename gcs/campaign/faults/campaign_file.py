@@ -14,7 +14,7 @@ from gcs.campaign.faults.detection_table import DetectionRow, case_name, row_of
 from gcs.campaign.faults.drawn_mission import DrawnMission, ScenarioTable
 from gcs.campaign.scenarios.field import FIELD
 from gcs.config import UnusableFile
-from gcs.config.toml_file import TomlFile, read_toml
+from gcs.config.toml_file import ParsedFile, read_toml
 from gcs.config.validate import Key, NotNegative, strict
 from gcs.mission.faults import fault_problems, read_fault
 from gcs.mission.model import Limits, Name
@@ -107,8 +107,13 @@ def read_campaign(path: Path) -> CampaignFile:
     problems += _row_problems(file, tables.row, cases)
     missions, bad = _missions(file, tables)
     problems += bad
-    for base in missions.values():
-        problems += _fault_problems(file, cases, base)
+    problems += [
+        file.problem(("fault", swept.table, key), reason)
+        for base in missions.values()
+        for case in cases
+        for swept in case.faults
+        for key, reason in fault_problems(swept.fault, base.system)
+    ]
     if problems:
         raise UnusableFile(list(dict.fromkeys(problems)))
     if tables.campaign.clean:
@@ -126,7 +131,7 @@ def _seeds(table: CampaignTable) -> tuple[int, ...]:
     return tuple(range(first, first + (table.seed_count or 1)))
 
 
-def _disagreements(file: TomlFile, tables: CampaignTables) -> Iterator[str]:
+def _disagreements(file: ParsedFile, tables: CampaignTables) -> Iterator[str]:
     table = tables.campaign
     if table.seeds is not None:
         for key in ("first_seed", "seed_count"):
@@ -142,13 +147,13 @@ def _disagreements(file: TomlFile, tables: CampaignTables) -> Iterator[str]:
         yield file.problem(("campaign", "clean"), f"a fault is named '{CLEAN}', as the flights without are")
 
 
-def _repeated(file: TomlFile, key: Key, values: Sequence[Any] | None) -> Iterator[str]:
+def _repeated(file: ParsedFile, key: Key, values: Sequence[Any] | None) -> Iterator[str]:
     for value, number in Counter(values or ()).items():
         if number > 1:
             yield file.problem(key, f"{value} appears {number} times")
 
 
-def _missions(file: TomlFile, tables: CampaignTables) -> tuple[dict[str, BaseMission], list[str]]:
+def _missions(file: ParsedFile, tables: CampaignTables) -> tuple[dict[str, BaseMission], list[str]]:
     """Missions go by the stem of their file; by all of it where two have the same. Scenarios have names."""
     entries = tables.campaign.missions
     problems: list[str] = []
@@ -175,15 +180,7 @@ def _missions(file: TomlFile, tables: CampaignTables) -> tuple[dict[str, BaseMis
     return missions, problems
 
 
-def _fault_problems(file: TomlFile, cases: tuple[Case, ...], base: BaseMission) -> Iterator[str]:
-    """Faults that do not agree with themselves or with the team of a mission."""
-    for case in cases:
-        for swept in case.faults:
-            for key, reason in fault_problems(swept.fault, base.system):
-                yield file.problem(("fault", swept.table, key), reason)
-
-
-def _row_problems(file: TomlFile, rows: tuple[DetectionRow, ...], cases: tuple[Case, ...]) -> Iterator[str]:
+def _row_problems(file: ParsedFile, rows: tuple[DetectionRow, ...], cases: tuple[Case, ...]) -> Iterator[str]:
     """Names in the rows of the table of detection that are of no case, or appear twice, and seeds that do."""
     names = {name for case in cases for name in (case.name, case_name(case.name, case.severity))}
     count = Counter(name for row in rows for name in row.faults)
@@ -195,7 +192,7 @@ def _row_problems(file: TomlFile, rows: tuple[DetectionRow, ...], cases: tuple[C
                 yield file.problem(("row", i, "faults", j), reason)
 
 
-def _cases(file: TomlFile, tables: CampaignTables) -> tuple[tuple[Case, ...], list[str]]:
+def _cases(file: ParsedFile, tables: CampaignTables) -> tuple[tuple[Case, ...], list[str]]:
     """Tables of one name are flown together, each at the severity of the same number."""
     problems: list[str] = []
     together: dict[str, list[int]] = {}
@@ -228,7 +225,7 @@ def _cases(file: TomlFile, tables: CampaignTables) -> tuple[tuple[Case, ...], li
     return tuple(cases), problems
 
 
-def _swept_fault(file: TomlFile, index: int, table: SweptTable, level: int) -> SweptFault:
+def _swept_fault(file: ParsedFile, index: int, table: SweptTable, level: int) -> SweptFault:
     """The fault of one table at one severity. Raises :class:`UnusableFile`."""
     raw = {key: value for key, value in file.data["fault"][index].items() if key not in _OWN_KEYS}
     values = _at(table, level)

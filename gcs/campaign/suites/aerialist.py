@@ -16,9 +16,10 @@ from gcs.campaign.folder import digest, plain
 from gcs.campaign.scenarios.generator import HELD_TO
 from gcs.campaign.scenarios.passage import passage_comments
 from gcs.campaign.suites.course import MOST_OBSTACLES, Course, checked_passage
-from gcs.campaign.suites.yaml_file import YamlFile, read_yaml
+from gcs.campaign.suites.yaml_file import read_yaml
 from gcs.campaign.toml_text import mission_text
 from gcs.config.text_file import read_text
+from gcs.config.toml_file import ParsedFile
 from gcs.config.validate import Key, NotNegative, Positive, UnusableFile, dotted, strict, validated
 from gcs.mission.items import FARTHEST, FileHome, ItemError
 from gcs.mission.model import Obstacle
@@ -116,7 +117,7 @@ class _Keys(NamedTuple):
         return ("simulation", "obstacles", i * len(_FLAT) if self.is_flat else i)
 
 
-def _test(file: YamlFile) -> tuple[_Test, _Keys]:
+def _test(file: ParsedFile) -> tuple[_Test, _Keys]:
     """Return what a course is made of, and its keys."""
     robot = "robot" if "robot" in file.data else "drone"  # as earlier versions name it
     simulation = _table(file, "simulation")
@@ -149,7 +150,7 @@ def _test(file: YamlFile) -> tuple[_Test, _Keys]:
     return validated(_Test, data, problem), keys
 
 
-def _table(file: YamlFile, key: str) -> dict[str, Any]:
+def _table(file: ParsedFile, key: str) -> dict[str, Any]:
     """Return a mapping of the file, empty where it is absent."""
     table = file.data.get(key) or {}
     if not isinstance(table, dict):
@@ -157,7 +158,7 @@ def _table(file: YamlFile, key: str) -> dict[str, Any]:
     return table
 
 
-def _plan(file: YamlFile, key: Key, name: str) -> Path:
+def _plan(file: ParsedFile, key: Key, name: str) -> Path:
     """Return the plan: as written from the test's folder or one above it, else by its name alone beside the test."""
     folder = file.path.absolute().parent
     places = [*(above / name for above in (folder, *folder.parents)), folder / Path(name).name]

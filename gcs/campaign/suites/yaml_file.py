@@ -1,11 +1,9 @@
 """Strict reading of YAML: parse, and point at the line of every error."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 from gcs.config.text_file import read_text
+from gcs.config.toml_file import ParsedFile
 from gcs.config.validate import Key, UnusableFile, dotted
 from gcs.extras import extra
 
@@ -16,23 +14,8 @@ _DEPTH_MAX = 32
 """Levels of a file that are read; a test has five."""
 
 
-@dataclass(frozen=True)
-class YamlFile:
-    """A parsed YAML file of one mapping that knows the line of every key."""
-
-    path: Path
-    data: dict[str, Any]
-    lines: dict[Key, int] = field(repr=False)
-    """Line (from 1) of every key and of every element of a list."""
-
-    def problem(self, key: Sequence[str | int], reason: str) -> str:
-        """Return a message of one line: file, line, key, reason."""
-        line = next((self.lines[tuple(key[:n])] for n in range(len(key), 0, -1) if tuple(key[:n]) in self.lines), 1)
-        return f"{self.path}: line {line}: {dotted(key)}: {reason}"
-
-
-def read_yaml(path: Path) -> YamlFile:
-    """Parse a YAML file. Raises :class:`UnusableFile` with the line of an error."""
+def read_yaml(path: Path) -> ParsedFile:
+    """Parse a YAML file of one mapping. Raises :class:`UnusableFile` with the line of an error."""
     text = read_text(path)
     loader = yaml.SafeLoader(text)
     try:
@@ -50,7 +33,7 @@ def read_yaml(path: Path) -> YamlFile:
         raise UnusableFile([f"{path}: not valid YAML: {' '.join(str(error).split())}"]) from error
     if not isinstance(data, dict):
         raise UnusableFile([f"{path}: line 1: must be a mapping of keys"])
-    return YamlFile(path, data, lines)
+    return ParsedFile(path, data, lines)
 
 
 def _check_size(path: Path, text: str) -> None:
