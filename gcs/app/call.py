@@ -155,7 +155,6 @@ def _limits(limits: Limits | Mapping[str, Any]) -> Limits:
 
 
 def _limit_table(limits: Limits | Mapping[str, Any]) -> dict[str, Any]:
-    """Return limits as the keys of a table ``[limits]``."""
     given = limits if isinstance(limits, Mapping) else dataclasses.asdict(limits)
     return {key: value for key, value in given.items() if value is not None}
 

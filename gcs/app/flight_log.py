@@ -45,8 +45,6 @@ class FlightLog:
 
 
 class _LinkLog:
-    """Log of one vehicle and its link."""
-
     def __init__(self, link: VehicleLink) -> None:
         self._link = link
         self._mode = (-1, False)

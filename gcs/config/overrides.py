@@ -24,12 +24,6 @@ def with_settings(system: SystemConfig, settings: Mapping[str, Any]) -> SystemCo
     tables = system.tables()
     if (mesh := system.payload.mesh) is not None:
         tables["payload"]["mesh"] = str(mesh.path)  # not as seen from the system file
-    set_by_path(tables, settings)
-    return system_of(GivenTables(Path("settings"), tables, {}))
-
-
-def set_by_path(tables: dict[str, Any], settings: Mapping[str, Any]) -> None:
-    """Set values by dotted path in the tables of a system file. Raises :class:`UnusableInput` for another path."""
     for path, value in settings.items():
         if path not in _paths():
             raise UnusableInput(f"settings: there is no '{path}'{_hint(path)}")
@@ -41,6 +35,7 @@ def set_by_path(tables: dict[str, Any], settings: Mapping[str, Any]) -> None:
             table.pop(key, None)
         else:
             table[key] = plain(value)
+    return system_of(GivenTables(Path("settings"), tables, {}))
 
 
 def plain(value: Any) -> Any:

@@ -87,8 +87,6 @@ def check_curve(mission: Mission) -> None:
 
 
 class _Place(NamedTuple):
-    """A place where the payload is to be."""
-
     name: str
     source: str
     position: Array
@@ -156,8 +154,6 @@ class _Surroundings:
 
 
 class _Check:
-    """The check of one mission."""
-
     def __init__(self, mission: Mission, standing: Sequence[Obstacle]) -> None:
         self._mission, self._found = mission, Feasibility()
         self._surroundings = _Surroundings(mission, standing)

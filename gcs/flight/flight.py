@@ -141,7 +141,6 @@ class Flight:
         return self.phase is Phase.AUTONOMOUS_LANDING
 
     def _evaluate(self, check: Check, time: float, now: float, estimate: Estimate | None = None) -> bool:
-        """Return whether a condition holds."""
         descent = self._progress(time) if estimate is not None and self.phase is Phase.LAND else None
         raised = self.failsafes.evaluate(check, Moment(self.phase, time, now, self._sequence, estimate, descent))
         if raised is not None:
@@ -202,7 +201,6 @@ class Flight:
         return Setpoints.idle(self.control.controller.parameters.number_of_uavs)
 
     def _step_sequence(self, time: float, now: float) -> bool:
-        """Return whether the command sequence is done."""
         assert self._sequence is not None
         self._sequence.step(time, now)
         return not self._evaluate(Check.COMMAND, time, now) and self._sequence.done

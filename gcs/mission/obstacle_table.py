@@ -68,7 +68,6 @@ class _ObstacleTable:
 
 
 def _table(kind: str, shape: type[Shape]) -> Any:
-    """Return the dataclass that a table of this shape is read into."""
     hints = get_type_hints(shape)
     own: list[tuple[str, Any, Any]] = [
         (key_of(part), _TYPES[part.metadata["unit"], hints[part.name]], field(default=part.default))

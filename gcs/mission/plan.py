@@ -226,7 +226,6 @@ def _home(latitude: float | None, longitude: float | None, altitude: float | Non
 
 
 def _simple_items(mission: _Mission) -> Iterator[MissionItem]:
-    """Yield the simple items in the order of flight."""
     for number, item in enumerate(mission.items, start=1):
         if isinstance(item, _SimpleItem):
             yield _item(f"item {number}", item)

@@ -32,15 +32,12 @@ def merged(lines: Iterable[str]) -> tuple[str, ...]:
             found += [match.string for match in matches]
             continue
         more = len(numbers) - SHOWN
-        which = _listed(numbers) if more < 1 else f"{', '.join(numbers[:SHOWN])} and {more} more"
+        last = f"{more} more" if more > 0 else numbers.pop()
+        which = f"{', '.join(numbers[:SHOWN])} and {last}"
         commands = dict.fromkeys(match["command"] for match in matches if match["command"])
         named = f" ({', '.join(commands)})" if commands else ""
         found.append(f"{kind}s {which}{named}: {_with_ranges([match['reason'] for match in matches])}")
     return tuple(found)
-
-
-def _listed(numbers: Sequence[str]) -> str:
-    return f"{', '.join(numbers[:-1])} and {numbers[-1]}"
 
 
 def _with_ranges(reasons: Sequence[str]) -> str:

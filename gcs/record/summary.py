@@ -8,7 +8,6 @@ import numpy as np
 from gcs.record.landing import in_air, landing_figures, onsets
 from gcs.record.outcome import Outcome
 from gcs.record.reader import Table
-from gcs.record.result import LIMITS, result_rows
 from gcs.record.run_data import RunData, position_error
 from gcs.record.run_folder import FORMAT
 from gcs.record.safety import safety_figures
@@ -24,6 +23,18 @@ STEP_PARTS = {
 }  # fmt: skip
 """Parts of a control step, and their columns."""
 _DIGITS = 6  # of a metre, a degree or a millisecond: below what is simulated faithfully
+FIGURES = {
+    "clearance": ("least clearance", "m", "at least"),
+    "position_rmse": ("position error, RMS", "m", "at most"),
+    "payload_tilt_deg": ("largest payload angle", "deg", "at most"),
+    "arrival": ("waypoints missed by", "m", "at most"),
+    "uav_separation": ("least distance of two UAVs", "m", "at least"),
+    "touchdown_speed": ("touchdown speed", "m/s", "at most"),
+    "contacts": ("contacts", "", "at most"),
+}
+"""What a flight is judged by, in the order in which it is shown: name, unit (none: a number of times), and the sense of
+its limit. All but ``contacts`` are keys of a mission's ``[limits]``."""
+LIMITS = tuple(name for name in FIGURES if name != "contacts")
 
 
 def summarise(
@@ -95,6 +106,27 @@ def summarise(
         }
     )
     return summary
+
+
+def result_rows(
+    values: Mapping[str, float | None], limits: Mapping[str, float], *, has_barriers: bool
+) -> list[dict[str, Any]]:
+    """Return a row for each of :data:`FIGURES`, with its limit and whether it is held (None: it has none).
+
+    A limit is held when its figure is known and within it; a clearance also when there is nothing to keep clear of
+    (``has_barriers`` False).
+    """
+    rows = []
+    for name, (what, unit, bound) in FIGURES.items():
+        value, limit = values[name], limits.get(name)
+        held = None
+        if limit is not None and value is None:
+            held = name == "clearance" and not has_barriers
+        elif limit is not None and value is not None:
+            held = value >= limit if bound == "at least" else value <= limit
+        row = {"name": name, "what": what, "value": value, "unit": unit, "bound": bound, "limit": limit, "held": held}
+        rows.append(row)
+    return rows
 
 
 def within_limits(summary: Mapping[str, Any]) -> bool:

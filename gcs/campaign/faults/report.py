@@ -57,7 +57,6 @@ def report(
 
 
 def _rates_table(rates: Sequence[Mapping[str, Any]], results: Sequence[Result]) -> Table:
-    """Return a row for each fault and severity."""
     rows = []
     for rate in rates:
         chosen = [result for result in results if (result.fault, result.level) == (rate["fault"], rate["level"])]

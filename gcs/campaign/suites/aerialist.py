@@ -118,7 +118,6 @@ class _Keys(NamedTuple):
 
 
 def _test(file: ParsedFile) -> tuple[_Test, _Keys]:
-    """Return what a course is made of, and its keys."""
     robot = "robot" if "robot" in file.data else "drone"  # as earlier versions name it
     simulation = _table(file, "simulation")
     obstacles = simulation.get("obstacles") or []
