@@ -8,7 +8,7 @@ from enum import IntEnum
 
 
 class Command(IntEnum):
-    """A MAV_CMD of navigation, waiting, speed or jumps; :mod:`.compile` has those that are flown."""
+    """A MAV_CMD that is flown, by :mod:`.compile`."""
 
     NAV_WAYPOINT = 16
     NAV_LOITER_UNLIM = 17
@@ -17,22 +17,10 @@ class Command(IntEnum):
     NAV_RETURN_TO_LAUNCH = 20
     NAV_LAND = 21
     NAV_TAKEOFF = 22
-    NAV_LAND_LOCAL = 23
-    NAV_TAKEOFF_LOCAL = 24
-    NAV_FOLLOW = 25
-    NAV_CONTINUE_AND_CHANGE_ALT = 30
     NAV_LOITER_TO_ALT = 31
-    NAV_ARC_WAYPOINT = 36
-    NAV_PATHPLANNING = 81
     NAV_SPLINE_WAYPOINT = 82
-    NAV_VTOL_TAKEOFF = 84
-    NAV_VTOL_LAND = 85
-    NAV_GUIDED_ENABLE = 92
     NAV_DELAY = 93
-    NAV_PAYLOAD_PLACE = 94
     CONDITION_DELAY = 112
-    CONDITION_CHANGE_ALT = 113
-    CONDITION_DISTANCE = 114
     DO_JUMP = 177
     DO_CHANGE_SPEED = 178
     JUMP_TAG = 600

@@ -15,7 +15,6 @@ Firmware = Literal["px4", "ardupilot"]
 ITEM_LIMIT = 10_000
 FARTHEST = 10_000.0
 """m from home. Beyond it the file's home is wrong, or the world no longer flat."""
-_COMMANDS = frozenset(Command)
 PARAM_NAMES = ("param 1", "param 2", "param 3", "param 4", "latitude", "longitude", "altitude")
 
 
@@ -110,8 +109,8 @@ def nothing_to_fly(items: Sequence[MissionItem]) -> str | None:
 
 
 def first_position(items: Iterable[MissionItem]) -> MissionItem | None:
-    """Return the first item that is flown to a latitude and longitude of its own."""
-    return next((item for item in items if item.command in _COMMANDS and item.has_position), None)
+    """Return the first item with a latitude and longitude of its own that is flown, or that refuses the file."""
+    return next((item for item in items if item.command not in LEFT_OUT and item.has_position), None)
 
 
 def check_latitude_longitude(latitude: float, longitude: float) -> None:
