@@ -2,17 +2,16 @@
 
 import json
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, get_args
 
 from pydantic import ValidationError
 
 from gcs.config.validate import adapter_of
 from gcs.errors import UnusableInput
 from gcs.faults import link, sensors, timing, values, world  # noqa: F401 -- each fills the table
-from gcs.faults.kind import KINDS, FaultSettings
+from gcs.faults.kind import KINDS, Family, FaultSettings
 
-_FAMILIES = ("link", "timing", "values", "sensors", "world")
-_sorted = sorted(KINDS.items(), key=lambda item: _FAMILIES.index(item[1].family))
+_sorted = sorted(KINDS.items(), key=lambda item: get_args(Family).index(item[1].family))
 KINDS.clear()
 KINDS.update(_sorted)
 

@@ -25,10 +25,10 @@ def implausible(mission: Mission) -> list[str]:
     high = max(flight.legs, key=lambda leg: leg.altitude)
     farthest = math.hypot(far.north, far.east)
     notes = _notes((farthest, far.source), (high.altitude, high.source), flight.time)
-    return notes + ([_LIKE_DEGREES] if _is_in_degrees(flight) else [])
-
-
-_LIKE_DEGREES = "all waypoints lie within 1 cm of each other, far from home: are these degrees? Points are in metres"
+    if _is_in_degrees(flight):
+        like = "all waypoints lie within 1 cm of each other, far from home"
+        notes.append(f"{like}: are these degrees? Points are in metres")
+    return notes
 
 
 def _notes(farthest: tuple[float, str], highest: tuple[float, str], time: float) -> list[str]:
