@@ -1,5 +1,6 @@
 """One flight of a campaign: its plan, and the call that flies it in a process of the campaign's executor."""
 
+import hashlib
 import json
 import os
 import secrets
@@ -7,22 +8,44 @@ import shlex
 import threading
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import gcs
-from gcs.campaign.folder import remove_folder, shown
-from gcs.campaign.product import verdict_key
+from gcs.campaign.folder import digest, remove_folder, shown
 from gcs.campaign.result import Flown, Result, summary_columns
 from gcs.errors import GcsError, UnusableInput
+from gcs.mission.read import read_mission
 from gcs.record.incomplete import INCOMPLETE
-from gcs.record.run_folder import MANIFEST
+from gcs.record.run_folder import MANIFEST, to_json
 
 DONE, OUTSIDE_LIMITS, UNUSABLE = 0, 1, 2
 """Exit statuses of ``gcs fly``."""
 _ONE_AT_A_TIME = threading.Lock()
 """A worker of a cluster may carry out calls in several threads: its flights would only delay each other."""
+
+
+PACKAGES = ("gcs", "idc_controller", "vehicle_sim")
+
+
+@cache
+def code_digest() -> str:
+    """Return a text that is another for other sources of the packages."""
+    root, found = Path(gcs.__file__).parents[1], hashlib.sha256()
+    for path in sorted(path for package in PACKAGES for path in (root / package).rglob("*.py")):
+        found.update(f"{path.relative_to(root)}\0".encode() + path.read_bytes())
+    return found.hexdigest()[:16]
+
+
+def verdict_key(mission: Path, config: Path | None, *options: str) -> str:
+    """Return a text that is another for another code, mission with its system and seed, or for other options."""
+    try:
+        as_read = json.dumps(to_json(replace(read_mission(mission, config), path=Path())))
+    except GcsError as error:  # as it will be refused
+        as_read = str(error)
+    return digest(code_digest(), as_read, *options)
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,9 @@ from typing import NamedTuple
 from gcs.config.flight_settings import DEFAULTS, FailsafeSettings
 from gcs.flight.alarms import Severity
 from gcs.flight.command_sequences import CommandSequence
-from gcs.flight.impact_monitor import ImpactMonitor
 from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import Phase
-from gcs.flight.plan_monitor import PlanMonitor
+from gcs.flight.plan_monitor import ImpactMonitor, PlanMonitor
 from gcs.flight.preflight import Preflight
 from gcs.flight.team import Team
 from idc_controller.estimation.estimate import Estimate

@@ -11,11 +11,10 @@ from gcs.flight.condition import Check, Moment, Reaction, System, Trigger
 from gcs.flight.control_loop import ControlLoop, Setpoints, StepRecord
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.failsafe_state import FailsafeState
-from gcs.flight.impact_monitor import ImpactMonitor
 from gcs.flight.mission_trajectory import MissionTrajectory
 from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import CONTROLLED, IN_AIR, Phase
-from gcs.flight.plan_monitor import PlanMonitor
+from gcs.flight.plan_monitor import ImpactMonitor, PlanMonitor
 from gcs.flight.preflight import Preflight
 from gcs.flight.spool import Touchdown
 from gcs.flight.team import Team

@@ -1,11 +1,13 @@
-"""Vehicles and payload as they report themselves, against the plan that is flown: what the estimate does not filter."""
+"""What vehicles and payload report of themselves, which no estimate filters: places off the plan, and impacts."""
 
 import math
 import statistics
+from collections.abc import Sequence
 
 import numpy as np
 
 from gcs.config.flight_settings import DEFAULTS, FailsafeSettings
+from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, Position
 
@@ -76,3 +78,22 @@ class PlanMonitor:
         """Return whether the payload's unit reports it overturned, and a vehicle confirms it."""
         confirmed = bool((self.deviations > self._settings.confirming_deviation).any())
         return self._overturned >= _OVERTURNED_SAMPLES and confirmed
+
+
+class ImpactMonitor:
+    """Counts of clipping that vehicles and payload unit report, against those of when the ground was last touched."""
+
+    def __init__(self, links: Sequence[VehicleLink]) -> None:
+        self.links = links
+        self._on_ground: list[int] = []
+
+    def impacts(self, *, clear: bool) -> list[int]:
+        """Return whose accelerometer has clipped since the payload became ``clear`` of the ground.
+
+        0 .. N - 1 the vehicles', N the payload unit's. Call once a control step.
+        """
+        counts = [link.status.clipping for link in self.links]
+        counts.append(max(link.status.payload_clipping for link in self.links))
+        if not clear or not self._on_ground:  # touching the ground is an impact, too
+            self._on_ground = counts
+        return [i for i, (count, before) in enumerate(zip(counts, self._on_ground, strict=True)) if count > before]

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.animation import PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -259,3 +260,31 @@ def _finish(ax: Axes, x: str, y: str) -> None:
     ax.grid(alpha=0.3)
     if ax.get_legend_handles_labels()[1]:
         ax.legend(frameon=False, fontsize=8)
+
+
+def animate(flown: Mapping[str, Flown], title: str, path: Path, frames: int) -> None:
+    """Write ``frames`` pictures of the simulations ``flown``, next to each other, over their time."""
+    figure = new_figure(title, (5.2 * len(flown), 4.8))
+    axes: list[Any] = []
+    moving: list[Any] = []
+    for column, (name, run) in enumerate(flown.items()):
+        ax: Any = figure.add_subplot(1, len(flown), column + 1, projection="3d")
+        ax.plot(*enu(run.reference), ":", color="#D55E00", lw=1.0)
+        ax.set_title(TITLES.get(name, name), fontsize=10)
+        label_space(ax)
+        axes.append(ax)
+    # Fixed from here on, which saves the layout of every picture.
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    writer = PillowWriter(fps=12)
+    with writer.saving(figure, str(path), 70):
+        for share in np.linspace(0.0, 1.0, frames):
+            for artist in moving:
+                artist.remove()
+            moving = []
+            for ax, run in zip(axes, flown.values(), strict=True):
+                k = round(share * (len(run.time) - 1))
+                moving += ax.plot(*enu(run.position[: k + 1]), color="black", lw=1.2)
+                moving += draw_formation(ax, run, k)
+                moving += draw_spheres(ax, run, k)
+            writer.grab_frame()

@@ -12,8 +12,7 @@ from gcs.campaign.scenarios.plans import fly_planning
 from gcs.config.overrides import with_settings
 from gcs.mission.model import Limits
 from gcs.mission.read import read_mission
-from gcs.planning.flight import PlanningFlight
-from gcs.planning.outcome import planned
+from gcs.planning.flight import PlanningFlight, planned
 from gcs.planning.scanned_map import open_sensors
 from gcs.planning.schedule import Schedule
 from idc_controller.perception.obstacle_map import ObstacleMap

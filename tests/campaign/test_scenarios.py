@@ -8,7 +8,7 @@ from scenario_results import result_of
 from small_campaign import InThisThread, flown_in, judged
 
 from gcs.app.cli import main
-from gcs.campaign import engine, product
+from gcs.campaign import engine, flight
 from gcs.campaign.engine import Campaign
 from gcs.campaign.flight import fly_plan
 from gcs.campaign.result import Flown, Result
@@ -294,7 +294,7 @@ def test_what_has_changed_is_flown_again(tmp_path, flown, monkeypatch):
     monkeypatch.setattr(scenarios, "HELD_TO", dataclasses.replace(scenarios.HELD_TO, clearance=0.2))
     assert campaign_in(tmp_path).results == []
     monkeypatch.undo()
-    monkeypatch.setattr(product, "code_digest", lambda: "of another code")
+    monkeypatch.setattr(flight, "code_digest", lambda: "of another code")
     assert campaign_in(tmp_path).results == []
 
 

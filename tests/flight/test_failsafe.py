@@ -19,10 +19,9 @@ from gcs.flight.detectors import MonitorAlarm
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.failsafe_state import FailsafeState
 from gcs.flight.guarantee import GuaranteeAlarm
-from gcs.flight.impact_monitor import ImpactMonitor
 from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import Phase
-from gcs.flight.plan_monitor import PlanMonitor
+from gcs.flight.plan_monitor import ImpactMonitor, PlanMonitor
 from gcs.mavlink.vehicle_link import AddressConflict
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.perception.standing_obstacles import MapObstacle, StandingObstacles

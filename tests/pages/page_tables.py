@@ -4,8 +4,8 @@ import subprocess
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from gcs.campaign.flight import PACKAGES
 from gcs.campaign.folder import digest
-from gcs.campaign.product import PACKAGES
 from gcs.errors import UnusableInput
 
 FLOWN = (*PACKAGES, "missions", "pyproject.toml")

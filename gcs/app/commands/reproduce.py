@@ -22,7 +22,6 @@ from gcs.mission.read import read_mission
 from gcs.record.run_data import read_run
 from gcs.record.run_folder import UnwritableFile, check_writable, make_folder
 from gcs.reproduce import figures, work
-from gcs.reproduce.animation import animate
 from gcs.reproduce.numbers import matrices, numbers
 from gcs.reproduce.page import paper_text, rounded, write_page
 from gcs.reproduce.plan import Plan, plan
@@ -118,8 +117,8 @@ def _draw(chosen: Plan, results: Results, found: dict[str, Any], out: Path, done
         "sigmavsdev.png": lambda p: figures.draw_noise(found["noise_worst"], p),
         "mass.png": lambda p: figures.draw_mass(found["mass"], p),
         "margin.png": lambda p: figures.draw_margin(found["margin"], p),
-        "anim3d.gif": lambda p: animate(simulations("tracking", SHOWN), without, p, chosen.frames),
-        "animObs3d.gif": lambda p: animate(simulations("avoidance", SHOWN), spheres, p, chosen.frames),
+        "anim3d.gif": lambda p: figures.animate(simulations("tracking", SHOWN), without, p, chosen.frames),
+        "animObs3d.gif": lambda p: figures.animate(simulations("avoidance", SHOWN), spheres, p, chosen.frames),
     }
     poles = {name: folder for name, folder in results.folders.items() if name.startswith("pole_course")}
     if poles:

@@ -20,8 +20,7 @@ from gcs.campaign.scenarios.passage import Passage
 from gcs.config import read_system
 from gcs.mission.model import Limits
 from gcs.mission.read import read_mission
-from gcs.planning.flight import PlanningFlight
-from gcs.planning.outcome import planned
+from gcs.planning.flight import PlanningFlight, planned
 from gcs.planning.schedule import Schedule
 
 
