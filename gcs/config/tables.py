@@ -11,7 +11,7 @@ import numpy as np
 from gcs.config.payload_mesh import PayloadMesh
 from idc_controller.arrays import Array
 from idc_controller.control.settings import CONTROL_RATE
-from idc_controller.payload_hull import PayloadHull
+from idc_controller.parameters import PayloadHull
 from idc_controller.settings import SettingsTable, setting
 from idc_controller.trajectory.settings import CORNER, Limits
 

@@ -16,7 +16,7 @@ from gcs.mavlink import px4
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.arrays import Array
 from idc_controller.geometry.formation import Formation
-from idc_controller.safety.obstruction import Obstruction, obstruction
+from idc_controller.safety.separation import Obstruction, obstruction
 
 
 def _of_a_vehicle(problem: Callable[[VehicleLink], str]) -> Condition:

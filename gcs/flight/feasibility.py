@@ -31,14 +31,13 @@ from gcs.mission.route_clearance import (
 )
 from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
-from idc_controller.geometry.bounding_cylinder import BoundingCylinder
-from idc_controller.geometry.free_space import FreeSpace
-from idc_controller.trajectory.lissajous_curve import LissajousCurve, check_full_rate
+from idc_controller.geometry.free_space import BoundingCylinder, FreeSpace
+from idc_controller.trajectory.lissajous import LissajousCurve, check_full_rate
 
 if TYPE_CHECKING:
     from idc_controller.geometry.obstacles import PredictedObstacle, Region
     from idc_controller.parameters import SystemParameters
-    from idc_controller.safety.obstruction import Obstruction
+    from idc_controller.safety.separation import Obstruction
 
 _SHORT = 0.3
 """m of the margin that a leg need not keep to be accepted: what the margin bars, a plan with slack may pass."""
@@ -112,7 +111,7 @@ class _Surroundings:
         if not self.in_the_way(place[None]):
             return None
         from idc_controller.geometry.formation import Formation
-        from idc_controller.safety.obstruction import obstruction
+        from idc_controller.safety.separation import obstruction
 
         return obstruction(Formation(self._mission.system.parameters()), self, 0.0, place, self.margin)
 

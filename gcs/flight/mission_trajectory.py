@@ -10,8 +10,7 @@ from gcs.mission.model import Lissajous, Mission
 from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Speed, TakeOff
 from idc_controller.arrays import Array
 from idc_controller.trajectory import paths
-from idc_controller.trajectory.lissajous import LissajousTrajectory
-from idc_controller.trajectory.lissajous_curve import LissajousCurve
+from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
 from idc_controller.trajectory.trajectory import Trajectory
 from idc_controller.trajectory.waypoints import WaypointTrajectory
 

@@ -13,8 +13,7 @@ from idc_controller.control.controller import IntegratedDecisionController
 from idc_controller.control.mpc import ModelPredictiveController
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.measurements import MeasurementNoise
-from idc_controller.geometry.bounding_cylinder import BoundingCylinder
-from idc_controller.geometry.flight_area import FlightArea
+from idc_controller.geometry.free_space import BoundingCylinder, FlightArea
 from idc_controller.geometry.obstacles import ObstacleSource
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.progress import AdaptiveGuidance, Guidance
@@ -28,7 +27,7 @@ from idc_controller.perception.scan_placement import SensorRays
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.standing_obstacles import MapObstacle
 from idc_controller.safety.filter_protocol import SafetyFilter
-from idc_controller.safety.give_way import give_way_time
+from idc_controller.safety.planner import give_way_time
 from idc_controller.safety.safety_filter import AvoidanceFilter
 from idc_controller.safety.settings import PlannerSettings
 

@@ -11,10 +11,9 @@ import numpy as np
 
 from gcs.mission.model import Obstacle
 from gcs.mission.route import Position
-from idc_controller.geometry.box import Wall
-from idc_controller.geometry.flight_area import FlightArea, Ring
-from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.free_space import FlightArea, Ring
 from idc_controller.geometry.shape import PlanView, Shape
+from idc_controller.geometry.shapes import Pole, Wall
 
 if TYPE_CHECKING:
     import shapely  # takes long to import, spent only where there is a fence

@@ -11,7 +11,7 @@ from gcs.config.system import SystemConfig
 from gcs.config.validate import NotNegative, Positive, strict
 from gcs.mission.motion import AnyMotion
 from gcs.mission.route import Route
-from idc_controller.geometry.flight_area import FlightArea, Ring
+from idc_controller.geometry.free_space import FlightArea, Ring
 from idc_controller.geometry.shape import Shape
 
 Name = Annotated[str, Field(min_length=1, max_length=200)]

@@ -14,9 +14,8 @@ from gcs.config.tables import Vector
 from gcs.config.validate import Positive, strict
 from gcs.mission.model import Name, Obstacle
 from gcs.mission.motion import Motion
-from idc_controller.geometry.mesh import MeshHull
 from idc_controller.geometry.shape import Shape
-from idc_controller.geometry.shapes import SHAPES
+from idc_controller.geometry.shapes import SHAPES, MeshHull
 
 CONVEX = 0.95
 """Share of its hull that a mesh must fill; with less the hull would take too much of the free space."""

@@ -34,7 +34,7 @@ from gcs.mission.items import (
     WaypointFile,
     nothing_to_fly,
 )
-from idc_controller.geometry.flight_area import Ring
+from idc_controller.geometry.free_space import Ring
 
 CORNER_LIMIT = 500
 FIXED_WING = 1

@@ -9,8 +9,7 @@ from gcs.mission.fence import boundary_walls
 from gcs.mission.model import Lissajous, Mission, Obstacle
 from gcs.mission.route import Circle, Route
 from idc_controller.arrays import Array
-from idc_controller.geometry.bounding_cylinder import BoundingCylinder
-from idc_controller.geometry.free_space import FreeSpace
+from idc_controller.geometry.free_space import BoundingCylinder, FreeSpace
 
 TRIED_LEGS = 2000
 """So many legs are looked at: a mission of more repeats itself."""

@@ -27,7 +27,7 @@ from gcs.record.summary import summarise
 from gcs.record.tables import COLUMNS
 from gcs.record.verdict import GroundReport, verdict
 from idc_controller.arrays import Array
-from idc_controller.control.planning import plan
+from idc_controller.control.controller import plan
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.estimation.measurement_model import MeasurementModel
 from idc_controller.estimation.measurements import MeasurementNoise, VehicleStates

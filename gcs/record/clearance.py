@@ -14,7 +14,7 @@ from idc_controller.arrays import Array
 from idc_controller.errors import ShapeError
 from idc_controller.geometry.oriented import OrientedShape
 from idc_controller.geometry.shape import Shape
-from idc_controller.payload_hull import PayloadHull
+from idc_controller.parameters import PayloadHull
 from idc_controller.rotations import rotation_from_quaternion
 
 DEFAULT_PAYLOAD = PayloadHull.box((1.0, 1.0, 0.5))

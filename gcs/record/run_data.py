@@ -23,7 +23,7 @@ from gcs.record.tables import ESTIMATE, OBSTACLES, REFERENCE, REFERENCE_COLUMNS,
 from idc_controller.arrays import Array
 from idc_controller.errors import ShapeError
 from idc_controller.geometry.shape import Columns
-from idc_controller.payload_hull import PayloadHull
+from idc_controller.parameters import PayloadHull
 
 
 class RunTables(dict[str, Table]):

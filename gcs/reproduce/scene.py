@@ -9,9 +9,8 @@ import numpy as np
 from gcs.config import SystemConfig
 from idc_controller.arrays import Array
 from idc_controller.geometry.obstacles import PredictedObstacle, Region
-from idc_controller.geometry.sphere import Sphere as SphereShape
-from idc_controller.trajectory.lissajous import LissajousTrajectory
-from idc_controller.trajectory.lissajous_curve import LissajousCurve
+from idc_controller.geometry.shapes import Sphere as SphereShape
+from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
 from idc_controller.trajectory.paths import Leg
 from idc_controller.trajectory.trajectory import Trajectory
 from idc_controller.trajectory.waypoints import WaypointTrajectory

@@ -10,7 +10,7 @@ from gcs.record.clearance import Formation, ObstacleTrack
 from gcs.reproduce.controls import PERIOD, Control, PaperControl, PaperVariant, ProjectControl
 from gcs.reproduce.scene import MARGIN, RADIUS, Sphere, configuration, shaped_figure, two_spheres
 from idc_controller.arrays import Array, Mask
-from idc_controller.geometry.sphere import Sphere as SphereShape
+from idc_controller.geometry.shapes import Sphere as SphereShape
 from idc_controller.paper.plant import Plant, PlantState
 from idc_controller.rotations import euler_from_quaternion
 

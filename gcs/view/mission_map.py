@@ -17,7 +17,7 @@ from gcs.mission.route import Route
 from gcs.mission.route_clearance import free_space, route_places, standing_obstacles
 from gcs.record.figures import FLOWN, LIMIT, OBSTACLE, SERIES, save_picture
 from idc_controller.arrays import Array
-from idc_controller.geometry.bounding_cylinder import BoundingCylinder
+from idc_controller.geometry.free_space import BoundingCylinder
 
 _ROUTE, _KNOWN, _UNKNOWN, _LEAST, _FENCE = FLOWN, OBSTACLE, SERIES[1], LIMIT, SERIES[2]
 _SPACING = 0.1

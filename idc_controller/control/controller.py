@@ -1,6 +1,6 @@
 """The Integrated Decision Controller: reference and estimate in, set-points out (fig:schCont).
 
-Two interfaces keep it open. Any :class:`~idc_controller.control.tracker.Tracker` can take the MPC's place. A
+Two interfaces keep it open. Any :class:`~idc_controller.control.mpc.Tracker` can take the MPC's place. A
 :class:`~idc_controller.safety.filter_protocol.SafetyFilter` is between the guidance's reference and the tracker,
 and deflects it to keep obstacles out of the hull.
 """
@@ -18,12 +18,12 @@ from idc_controller.control.force_components import (
 )
 from idc_controller.control.ground_controller import GroundController
 from idc_controller.control.load_adaptation import LoadAdaptation
-from idc_controller.control.planning import plan
+from idc_controller.control.mpc import Tracker
 from idc_controller.control.settings import ControllerSettings
-from idc_controller.control.tracker import Tracker
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.guidance.progress import Guidance
 from idc_controller.guidance.sight import SightLimit
+from idc_controller.model.drag import Air
 from idc_controller.model.linear import LinearModel
 from idc_controller.parameters import SystemParameters
 from idc_controller.safety.filter_protocol import SafetyFilter, SafetyReport
@@ -160,3 +160,16 @@ class IntegratedDecisionController:
 def _directions(n: Array) -> Array:
     """Return the unit thrust vectors (N, 3), NED, with level parts ``n`` (N, 2)."""
     return np.column_stack([n, -np.sqrt(np.maximum(1.0 - (n[:, 0] ** 2 + n[:, 1] ** 2), 0.0))])
+
+
+def plan(
+    safety: SafetyFilter, guidance: Guidance, estimate: Estimate, mission: Trajectory, air: Air | None = None
+) -> PayloadTrajectory:
+    """Return the trajectory to track along ``mission`` from the time of an ``estimate`` on.
+
+    ``air``: estimated motion and drag of the air; None: not estimated.
+    """
+    trajectory = safety.filter(estimate.time, guidance.reference(estimate.time, mission), estimate)
+    report = safety.report
+    guidance.observe(trajectory, report.lag, report.deviation, air, report.standing_slack)
+    return trajectory

@@ -12,14 +12,14 @@ import numpy as np
 from scipy.linalg import solve_discrete_are
 
 from idc_controller.arrays import Array
+from idc_controller.control.mpc import TrackingOutput
 from idc_controller.control.settings import GroundControlSettings
-from idc_controller.control.tracker import TrackingOutput
 from idc_controller.model.linear import LinearModel, discretised
 from idc_controller.trajectory.flatness import FlatReference
 
 
 class GroundController:
-    """A tracker for the time on the ground; see :class:`~idc_controller.control.tracker.Tracker`."""
+    """A tracker for the time on the ground; see :class:`~idc_controller.control.mpc.Tracker`."""
 
     def __init__(
         self, model: LinearModel, period: float, settings: GroundControlSettings = GroundControlSettings()

@@ -17,12 +17,117 @@ from numpy.typing import ArrayLike
 
 from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.errors import TrajectoryError
-from idc_controller.geometry.bounding_cylinder import BoundingCylinder
-from idc_controller.geometry.flight_area import FlightArea
 from idc_controller.geometry.shape import Shape
 
 if TYPE_CHECKING:
-    from idc_controller.geometry.obstacles import PredictedObstacle
+    pass
+
+
+from dataclasses import dataclass
+from functools import cached_property, reduce
+from typing import TYPE_CHECKING
+
+from idc_controller.parameters import SystemParameters
+
+if TYPE_CHECKING:
+    import shapely  # takes long to import, spent only where there is a fence
+
+
+Ring = tuple[tuple[float, float], ...]
+"""Corners (north, east) of a polygon, m from home."""
+
+
+@dataclass(frozen=True)
+class FlightArea:
+    """Where the payload's centre may be in plan view; its edges belong to it, and it has no top.
+
+    Whoever plans takes walls along its edges for obstacles as well: a path that keeps away from these, and begins
+    inside, stays inside.
+    """
+
+    boundary: tuple[Ring, ...] = ()
+    """Rings about the area: inside is what an odd number of them encloses; none: everywhere."""
+    excluded: tuple[Ring, ...] = ()
+    """Polygons that must not be entered."""
+
+    def contains(self, places: Array) -> Mask:
+        """Return whether the area holds each of ``places`` (P, 2 or 3), NED (m)."""
+        import shapely
+
+        north, east = places[:, 0], places[:, 1]
+        inside = np.ones(len(places), dtype=bool)
+        if self._included is not None:
+            inside &= shapely.intersects_xy(self._included, north, east)
+        if self.excluded:
+            inside &= ~shapely.contains_xy(self._excluded, north, east)
+        return inside
+
+    def within(self, region: shapely.Geometry) -> shapely.Geometry:
+        """Return the part of a ``region`` in plan view (north, east, m) that lies in the area."""
+        included = region if self._included is None else region.intersection(self._included)
+        return included.difference(self._excluded)
+
+    def is_hole(self, ring: Ring) -> bool:
+        """Return whether one of the rings of the boundary has the area on its outer side."""
+        import shapely
+
+        polygon = shapely.Polygon(ring)
+        around = (other for other in self.boundary if other != ring)
+        return sum(bool(shapely.Polygon(other).contains(polygon)) for other in around) % 2 == 1
+
+    @cached_property
+    def _included(self) -> shapely.Geometry | None:
+        import shapely
+
+        if not self.boundary:
+            return None
+        included = reduce(shapely.symmetric_difference, map(shapely.Polygon, self.boundary))
+        shapely.prepare(included)
+        return included
+
+    @cached_property
+    def _excluded(self) -> shapely.Geometry:
+        import shapely
+
+        excluded = shapely.union_all([shapely.Polygon(ring) for ring in self.excluded])
+        shapely.prepare(excluded)
+        return excluded
+
+
+@dataclass(frozen=True)
+class BoundingCylinder:
+    """The upright cylinder that holds payload, links and discs, about the payload's centre (m).
+
+    In plan view they lie within a rectangle with rounded corners as well, its edges north and east.
+    """
+
+    radius: float
+    above: float
+    """Height of the highest disc above the payload's centre."""
+    below: float
+    """Depth of the payload's lowest point below its centre."""
+    core: tuple[float, float] = (0.0, 0.0)
+    """Half edges of that rectangle, north and east, without its rounding."""
+    rounding: float = math.inf
+    """Distance from the core to its edge; infinite: only the cylinder counts."""
+
+    def __post_init__(self) -> None:
+        for name in ("radius", "above", "below"):
+            if not (math.isfinite(getattr(self, name)) and getattr(self, name) >= 0.0):
+                raise TrajectoryError(f"the formation's {name} must be zero or more, not {getattr(self, name)}")
+
+    @classmethod
+    def of(cls, parameters: SystemParameters, link_tilt: float = 0.0) -> BoundingCylinder:
+        """Return that of the formation at rest, its links tilted together by up to ``link_tilt`` (rad)."""
+        swing = parameters.l * math.sin(link_tilt)
+        reach = np.linalg.norm(parameters.p[:, :2], axis=1) + swing
+        top = parameters.l - parameters.p[:, 2] + parameters.disc_radius * math.sin(link_tilt)
+        radius = max(parameters.payload.horizontal_reach, float(reach.max()) + parameters.disc_radius)
+        rounding = float(swing.max()) + parameters.disc_radius
+        payload = np.abs(parameters.payload.bounds[:, :2]).max(axis=0) - rounding
+        north, east = np.maximum(np.abs(parameters.p[:, :2]).max(axis=0), payload).tolist()
+        return cls(radius, float(top.max()), parameters.payload.below, (north, east), rounding)
+
 
 _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 _SEARCH_STEPS = 20
@@ -143,24 +248,6 @@ class FreeSpace:
             least = np.minimum(least, np.minimum(left, right))
             low, high = np.where(left > right, shares[0], low), np.where(left > right, high, shares[1])
         return least
-
-
-def first_conflict(
-    positions: Array, obstacles: Sequence[PredictedObstacle], formation: BoundingCylinder, margin: float
-) -> int | None:
-    """Return the index of the first of ``positions`` (K, 3) nearer than ``margin`` (m) to an obstacle.
-
-    Each obstacle is where it is predicted at the same K moments, or at one moment (1, 3) for all of them, and
-    grown by its ``growth`` of that moment. None: there is no conflict.
-    """
-    if not obstacles:
-        return None
-    count = len(positions)
-    centres = np.stack([np.broadcast_to(o.positions, (count, 3)) for o in obstacles], axis=1)
-    growth = np.stack([np.broadcast_to(o.growth, (count,)) for o in obstacles], axis=1)
-    distance = _Bodies.of([o.shape for o in obstacles]).distance(positions[:, None] - centres, formation)
-    near = (distance - growth < margin - TOUCHING).any(axis=1)
-    return int(np.argmax(near)) if near.any() else None
 
 
 class _Bodies:

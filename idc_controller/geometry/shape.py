@@ -1,6 +1,6 @@
 """The interface of an obstacle's shape: a convex body about its centre, everything that depends on its kind a method.
 
-A kind of shape is one module with one class, entered in :data:`idc_controller.geometry.shapes.SHAPES`. SI units, NED.
+A kind of shape is one class, entered in :data:`idc_controller.geometry.shapes.SHAPES`. SI units, NED.
 """
 
 from __future__ import annotations
@@ -164,9 +164,12 @@ class Shape(ABC):
     def dimensions(self) -> str:
         """Sizes in words, for the operator."""
 
-    @abstractmethod
     def geometry(self) -> DistanceShape:
-        """Return the shape for distance queries, in its own frame."""
+        """Return the shape for distance queries, in its own frame: by default that of :meth:`collision`."""
+        import coal
+
+        primitive, dimensions = self.collision()
+        return getattr(coal, primitive.capitalize())(*dimensions.values())
 
     @abstractmethod
     def collision(self) -> CollisionGeometry:

@@ -17,9 +17,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.bounding_cylinder import BoundingCylinder
-from idc_controller.geometry.flight_area import FlightArea
-from idc_controller.geometry.free_space import FreeSpace
+from idc_controller.geometry.free_space import BoundingCylinder, FlightArea, FreeSpace
 from idc_controller.geometry.shape import Shape
 from idc_controller.guidance.settings import DetourSettings
 from idc_controller.guidance.straighten import free_segments_from, straightened

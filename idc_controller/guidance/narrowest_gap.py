@@ -19,9 +19,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.bounding_cylinder import BoundingCylinder
-from idc_controller.geometry.flight_area import FlightArea
-from idc_controller.geometry.free_space import FreeSpace
+from idc_controller.geometry.free_space import BoundingCylinder, FlightArea, FreeSpace
 from idc_controller.geometry.shape import Shape
 from idc_controller.guidance.detour import whole_region
 from idc_controller.guidance.settings import DetourSettings

@@ -12,9 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.bounding_cylinder import BoundingCylinder
-from idc_controller.geometry.flight_area import FlightArea
-from idc_controller.geometry.free_space import TOUCHING, FreeSpace
+from idc_controller.geometry.free_space import TOUCHING, BoundingCylinder, FlightArea, FreeSpace
 from idc_controller.geometry.obstacles import ObstacleSource, PredictedObstacle
 from idc_controller.guidance.detour import find_detour
 from idc_controller.guidance.settings import NavigatorSettings

@@ -12,8 +12,7 @@ from idc_controller.guidance.settings import ProgressSettings
 from idc_controller.guidance.sight import SightLimit, SpeedBySight
 from idc_controller.model.drag import Air
 from idc_controller.trajectory.flatness import PayloadTrajectory
-from idc_controller.trajectory.scaled import ScaledReference
-from idc_controller.trajectory.trajectory import RestTrajectory, Trajectory
+from idc_controller.trajectory.trajectory import RestTrajectory, ScaledReference, Trajectory
 
 
 class Guidance:

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.interpolate import BPoly
 
 from idc_controller.arrays import Array, Indices
-from idc_controller.geometry.flight_area import FlightArea
+from idc_controller.geometry.free_space import FlightArea
 from idc_controller.geometry.obstacles import Bodies, ObstacleSource, PredictedObstacle, Region
 from idc_controller.geometry.shape import Shape
 from idc_controller.guidance.resting_place_kernels import least_distances

@@ -12,10 +12,10 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from idc_controller.arrays import Array, Indices, Mask
-from idc_controller.geometry.bounding_cylinder import BoundingCylinder
+from idc_controller.geometry.free_space import BoundingCylinder
 from idc_controller.guidance.settings import SightSettings
 from idc_controller.trajectory.flatness import PayloadTrajectory
-from idc_controller.trajectory.scaled import ScaledReference
+from idc_controller.trajectory.trajectory import ScaledReference
 
 SIGHT_REASONS = ("", "unseen", "blind", "hidden", "range")
 """Why sight limits the progress; the records number them."""

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.linalg import solve_discrete_are
 
 from idc_controller.arrays import Array
-from idc_controller.control.prediction import CondensedPrediction
+from idc_controller.control.mpc import CondensedPrediction
 from idc_controller.errors import SolverError
 from idc_controller.model.linear import discretised
 from idc_controller.paper.state_space import Layout, minimal

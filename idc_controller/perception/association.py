@@ -7,8 +7,8 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.box import Wall
 from idc_controller.geometry.shape import Shape
+from idc_controller.geometry.shapes import Wall
 from idc_controller.perception.clusters import Cluster
 
 _FAR = 1e3

@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from idc_controller.arrays import Array, Indices, Mask
-from idc_controller.geometry.box import Wall
+from idc_controller.geometry.shapes import Wall
 from idc_controller.perception.piece_cutting import Body, cut
 from idc_controller.perception.standing_map import StandingMap, SurfaceElements
 from idc_controller.perception.upright_box_kernels import extended_box, fitted_box, reaches_out

@@ -8,8 +8,8 @@ from scipy.special import ndtri
 
 from idc_controller.arrays import Array
 from idc_controller.estimation.health.chi_squared import length_quantile, upper_quantile
-from idc_controller.geometry.box import Wall
 from idc_controller.geometry.shape import Shape
+from idc_controller.geometry.shapes import Wall
 from idc_controller.perception.manoeuvre import ManoeuvreDetector
 from idc_controller.perception.motion_imm import MotionImm, MotionModels
 from idc_controller.perception.seen_points_kernels import outermost, remembered

@@ -10,8 +10,8 @@ from collections import deque
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.box import Wall
 from idc_controller.geometry.shape import Shape
+from idc_controller.geometry.shapes import Wall
 
 _ABOUT = 0.1
 """Distance outside of the region up to which a place still counts as visited: errors of the centre (m)."""

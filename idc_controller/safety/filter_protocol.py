@@ -6,7 +6,7 @@ from typing import NamedTuple, Protocol
 from idc_controller.arrays import Array
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.trajectory.flatness import PayloadTrajectory
-from idc_controller.trajectory.scaled import ScaledReference
+from idc_controller.trajectory.trajectory import ScaledReference
 
 
 class SafetyReport(NamedTuple):

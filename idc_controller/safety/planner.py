@@ -7,12 +7,14 @@ in :mod:`idc_controller.safety.constraints`; slacks keep the QP feasible and say
 from __future__ import annotations
 
 import math
+from bisect import bisect_left
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
 from scipy.linalg import block_diag, solve_discrete_are
+from scipy.optimize import linprog
 
 from idc_controller.arrays import Array, Mask
 from idc_controller.errors import SolverError
@@ -20,8 +22,10 @@ from idc_controller.geometry.formation import Formation
 from idc_controller.qp.daqp_solver import DaqpSolver
 from idc_controller.qp.problem import QpSolver, QuadraticProgram
 from idc_controller.safety.constraints import planner_constraints
+from idc_controller.safety.constraints.acceleration_bounds import AccelerationBounds
 from idc_controller.safety.constraints.constraint import Constraint, Penalty, PlanningStep
 from idc_controller.safety.constraints.exponential_barrier import ExponentialBarrier
+from idc_controller.safety.constraints.pop_bounds import PopBounds
 from idc_controller.safety.constraints.snap_bounds import SnapBounds
 from idc_controller.safety.separation import Separation
 from idc_controller.safety.settings import PlannerSettings
@@ -242,3 +246,36 @@ def terminal_weight(period: float, W: Array) -> Array:
     A = np.array([[period ** (c - r) / factorial(c - r) if c >= r else 0.0 for c in range(4)] for r in range(4)])
     B = np.array([[period ** (4 - r) / factorial(4 - r)] for r in range(4)])
     return np.asarray(solve_discrete_are(A, B, W[:4, :4], W[4:, 4:]))
+
+
+_HARD = Penalty(0.0, 0.0)
+_ASIDE = 1
+"""The axis along which it moves aside: level, where acceleration and snap are limited most."""
+
+
+def give_way_time(settings: PlannerSettings, distance: float) -> float:
+    """Return the time (s) in which a plan from steady motion is a ``distance`` (m) aside of it, at the earliest.
+
+    The farthest place at a stage is the solution of a linear programme: the limits of acceleration, snap and pop of
+    the safety QP, kept without slack, on the snap at its knots. Between stages the place is linear, beyond the horizon
+    at the mean speed until then.
+    """
+    chain = settings.chain
+    count = chain.stages + 1
+    steady = np.zeros((5, count, 3))
+    step = PlanningStep(steady, np.zeros((count, 5, 3)), steady[2], (), np.zeros(3), np.zeros(3))
+    rows = [bounds(settings, _HARD).rows(step) for bounds in (AccelerationBounds, PopBounds)]
+    G, h = np.vstack([G for G, _ in rows]), np.concatenate([h for _, h in rows])
+    limits = np.column_stack(SnapBounds(settings).bounds(step))
+
+    def farthest(k: int) -> float:
+        aside = np.zeros((3, chain.knots))
+        aside[_ASIDE] = chain.response[1][k, 0]
+        return -float(linprog(-aside.ravel(), A_ub=G, b_ub=h, bounds=limits).fun)
+
+    last = farthest(count - 1)
+    if last < distance:
+        return float(chain.times[-1] * distance / last)
+    k = bisect_left(range(count), distance, key=farthest)
+    before = farthest(k - 1)
+    return float(chain.times[k - 1] + chain.period * (distance - before) / (farthest(k) - before))

@@ -7,8 +7,7 @@ import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.trajectory.integrator_chain import Chain
-from idc_controller.trajectory.scaled import ScaledReference
-from idc_controller.trajectory.trajectory import Times, Trajectory
+from idc_controller.trajectory.trajectory import ScaledReference, Times, Trajectory
 from idc_controller.trajectory.trajectory_kernels import deflect, progress
 
 _NO_STATES = np.zeros((0, 5, 3))

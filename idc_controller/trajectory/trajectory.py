@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -204,3 +205,31 @@ def point(value: ArrayLike, name: str) -> Array:
     if array.shape != (3,) or not np.isfinite(array).all():
         raise TrajectoryError(f"{name} must be three finite numbers (north, east, down), not {value!r}")
     return array
+
+
+@dataclass(frozen=True, eq=False)
+class ScaledReference:
+    """``trajectory`` with its time replaced by the progress s(t) = progress + rate (t - start)."""
+
+    trajectory: Trajectory
+    start: float = 0.0
+    """Time (s) of ``progress``."""
+    progress: float = 0.0
+    """Path parameter (s): the trajectory's own time."""
+    rate: float = 1.0
+    """Rate of the progress: 1 is the trajectory's own speed, 0 rest."""
+
+    def progress_at(self, time: float) -> float:
+        """Return the progress (s) at ``time`` (s)."""
+        return self.progress + self.rate * (time - self.start)
+
+    def after(self, elapsed: Array, order: int = 4) -> Array:
+        """Return position and derivatives (order + 1, K, 3), NED, SI, at ``elapsed`` (K,) (s) since the start."""
+        derivatives = self.trajectory.derivatives(self.progress + self.rate * elapsed, order)
+        if self.rate == 1.0:
+            return derivatives
+        return derivatives * (self.rate ** np.arange(order + 1))[:, None, None]
+
+    def derivatives(self, times: Array, order: int = 4) -> Array:
+        """Return position and derivatives (order + 1, K, 3), NED, SI, at ``times`` (K,) (s)."""
+        return self.after(np.asarray(times, dtype=float) - self.start, order)

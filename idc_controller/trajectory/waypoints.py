@@ -16,9 +16,14 @@ from numpy.typing import ArrayLike
 from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
 from idc_controller.trajectory.paths import Circle, Leg, Mark, Piece, pieces
-from idc_controller.trajectory.sampled_path import SampledPath, at_half_intervals, distance_to_line
+from idc_controller.trajectory.sampled_path import (
+    SampledPath,
+    Smoothing,
+    at_half_intervals,
+    distance_to_line,
+    smoothing_for,
+)
 from idc_controller.trajectory.settings import CORNER, Limits
-from idc_controller.trajectory.smoothing import Smoothing, smoothing_for
 from idc_controller.trajectory.spline import SplineTrajectory, within_limits
 from idc_controller.trajectory.trajectory import Times, Trajectory, finite, point, positive
 

@@ -26,8 +26,7 @@ from gcs.mission.model import Mission
 from gcs.mission.read import read_mission
 from gcs.planning.schedule import Schedule
 from gcs.record.run_folder import open_run_folder
-from idc_controller.geometry.bounding_cylinder import BoundingCylinder
-from idc_controller.geometry.free_space import FreeSpace
+from idc_controller.geometry.free_space import BoundingCylinder, FreeSpace
 
 ROOT = Path(__file__).parents[2]
 SCENARIOS = """

@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from conflicts import first_conflict
 from scenario_results import result_of
 from small_campaign import InThisThread, flown_in, judged
 
@@ -26,10 +27,9 @@ from gcs.mission.read import read_mission
 from gcs.planning.schedule import Schedule, arrival
 from gcs.record.run_folder import open_run_folder
 from gcs.record.tables import truth_columns
-from idc_controller.geometry.bounding_cylinder import BoundingCylinder
-from idc_controller.geometry.free_space import first_conflict
+from idc_controller.geometry.free_space import BoundingCylinder
 from idc_controller.geometry.obstacles import PredictedObstacle
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Sphere
 
 pytestmark = pytest.mark.slow
 

@@ -23,10 +23,8 @@ from gcs.mission.motion import WaypointsMotion
 from gcs.mission.read import read_mission
 from gcs.planning.flight import PlanningFlight
 from gcs.planning.schedule import Schedule
-from idc_controller.geometry.box import Wall
 from idc_controller.geometry.free_space import FreeSpace
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere, Wall
 from idc_controller.guidance.detour import find_detour
 from idc_controller.guidance.narrowest_gap import Gap
 

@@ -12,8 +12,7 @@ from gcs.campaign.suites.plans import Suite, read_suite
 from gcs.campaign.suites.yaml_file import read_yaml
 from gcs.config import UnusableFile
 from gcs.mission.read import read_mission
-from idc_controller.geometry.box import Wall
-from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.shapes import Pole, Wall
 
 HOME = (47.397738, 8.5455957)
 NORTH, EAST = 111_180.0, 75_360.0

@@ -19,10 +19,10 @@ from gcs.errors import UnusableInput
 from gcs.record.run_data import read_run
 from gcs.record.run_folder import write_manifest
 from idc_controller.errors import ParameterError
-from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.formation import Formation
+from idc_controller.geometry.free_space import BoundingCylinder
 from idc_controller.model.nonlinear import accelerations
-from idc_controller.payload_hull import PayloadHull
+from idc_controller.parameters import PayloadHull
 from idc_controller.trajectory.flatness import Load
 from vehicle_sim.world.multibody import principal_axes
 from vehicle_sim.world.world import World

@@ -21,7 +21,7 @@ from idc_controller.estimation.health.channel_isolation import ChannelIsolation
 from idc_controller.estimation.measurement_model import MeasurementModel
 from idc_controller.estimation.measurements import Attitude, MeasurementNoise
 from idc_controller.estimation.settings import MeasurementModelSettings
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Sphere
 from idc_controller.model.linear import LinearModel
 from idc_controller.safety.settings import PlannerSettings
 

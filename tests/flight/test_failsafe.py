@@ -23,7 +23,7 @@ from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import Phase
 from gcs.flight.plan_monitor import ImpactMonitor, PlanMonitor
 from gcs.mavlink.vehicle_link import AddressConflict
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Sphere
 from idc_controller.perception.standing_obstacles import MapObstacle, StandingObstacles
 from idc_controller.trajectory.trajectory import RestTrajectory
 from vehicle_sim.swarm import Swarm

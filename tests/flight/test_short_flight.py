@@ -20,8 +20,7 @@ from gcs.mavlink import px4
 from gcs.mission.model import Obstacle
 from gcs.mission.read import read_mission
 from gcs.record.reader import read_table
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere
 from idc_controller.model.linear import LinearModel
 
 BALL = Obstacle("ball", (5.0, 1.0, -3.5), Sphere(0.5), known=False)

@@ -9,11 +9,9 @@ from plain_barrier import disc_support
 from plain_flatness import flat_forces
 from proxsuite import proxqp
 
-from idc_controller.geometry.box import Wall
 from idc_controller.geometry.formation import Formation, outward_facets
 from idc_controller.geometry.obstacles import PredictedObstacle
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere, Wall
 from idc_controller.safety.separation import PredictedObstacles, separations
 from idc_controller.trajectory.flatness import Load
 

@@ -5,12 +5,9 @@ import numpy as np
 import pytest
 from paper_system import system
 
-from idc_controller.geometry.box import Box, Wall
-from idc_controller.geometry.capsule import Capsule
 from idc_controller.geometry.formation import Formation
 from idc_controller.geometry.gjk_kernels import measure_distances
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Box, Capsule, Pole, Sphere, Wall
 
 STAGES = 200
 SHAPES = [

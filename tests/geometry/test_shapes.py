@@ -11,9 +11,8 @@ import shapely
 from bodies import EXAMPLES
 
 from idc_controller.errors import ShapeError
-from idc_controller.geometry.box import Wall
 from idc_controller.geometry.obstacles import Bodies, PointGroups
-from idc_controller.geometry.shapes import SHAPES, shape_class
+from idc_controller.geometry.shapes import SHAPES, Wall, shape_class
 
 pytestmark = pytest.mark.numerics
 

@@ -8,12 +8,8 @@ import numpy as np
 import pytest
 
 from idc_controller.errors import TrajectoryError
-from idc_controller.geometry.bounding_cylinder import BoundingCylinder
-from idc_controller.geometry.box import Wall
-from idc_controller.geometry.free_space import FreeSpace, first_conflict
-from idc_controller.geometry.obstacles import PredictedObstacle
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.free_space import BoundingCylinder, FreeSpace
+from idc_controller.geometry.shapes import Pole, Sphere, Wall
 from idc_controller.guidance.detour import find_detour
 from idc_controller.guidance.settings import DetourSettings
 from idc_controller.guidance.straighten import straightened
@@ -285,21 +281,6 @@ def test_detour_leads_through_gap_that_only_the_narrow_side_fits():
     for formation, is_straight in ((slim, True), (BoundingCylinder(1.1, 3.75, 0.25), False)):
         detour = find_detour(walls, (0.0, 0.0, -5.0), (16.0, 0.0, -5.0), formation, 0.5)
         assert (detour.length == 16.0) == is_straight
-
-
-def test_first_conflict_of_path_is_found():
-    times = np.linspace(0.0, 6.0, 61)
-    positions = np.column_stack([2.0 * times, np.zeros(61), np.full(61, -5.0)])
-    shape = Sphere(0.5)
-    standing = PredictedObstacle("standing", shape, np.array([[9.0, 0.0, -5.0]]), np.zeros(1))
-    # 9 - 0.5 - 1.1 - 0.3 = 7.1 m: passed between samples 35 (7.0) and 36 (7.2).
-    assert first_conflict(positions, [standing], FORMATION, 0.3) == 36
-    assert first_conflict(positions, [], FORMATION, 0.3) is None
-    assert first_conflict(positions, [standing], FORMATION, 0.0) == 38
-    grown = PredictedObstacle("grown", shape, np.tile([9.0, 0.0, -5.0], (61, 1)), np.linspace(0.0, 1.0, 61))
-    assert first_conflict(positions, [grown], FORMATION, 0.3) == 33
-    gone = np.column_stack([9.0 + 2.0 * times, np.zeros(61), np.full(61, -5.0)])
-    assert first_conflict(positions, [PredictedObstacle("gone", shape, gone, np.zeros(61))], FORMATION, 0.3) is None
 
 
 def test_formation_of_parameters(parameters):

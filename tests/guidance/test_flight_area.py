@@ -17,8 +17,7 @@ from standing_obstacles import StandingObstacles
 from gcs.config import read_system
 from gcs.mission.fence import Exclusion, boundary_of, boundary_walls, excluded_polygon
 from gcs.record.run_data import RunData
-from idc_controller.geometry.flight_area import FlightArea
-from idc_controller.geometry.free_space import BoundingCylinder
+from idc_controller.geometry.free_space import BoundingCylinder, FlightArea
 from idc_controller.guidance.detour import find_detour
 from idc_controller.guidance.narrowest_gap import narrowest_gap
 from idc_controller.guidance.navigator import Navigator

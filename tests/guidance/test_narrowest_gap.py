@@ -7,11 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from idc_controller.geometry.bounding_cylinder import BoundingCylinder
-from idc_controller.geometry.box import Box, Wall
-from idc_controller.geometry.free_space import FreeSpace
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.free_space import BoundingCylinder, FreeSpace
+from idc_controller.geometry.shapes import Box, Pole, Sphere, Wall
 from idc_controller.guidance.narrowest_gap import WIDEST, narrowest_gap
 
 FORMATION = BoundingCylinder(1.3, 3.5, 0.25)

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from avoidance_scene import Scene, pole, straight, wall
+from conflicts import first_conflict
 from paper_system import system
 
-from idc_controller.geometry.box import Wall
-from idc_controller.geometry.free_space import BoundingCylinder, first_conflict
+from idc_controller.geometry.free_space import BoundingCylinder
+from idc_controller.geometry.shapes import Wall
 from idc_controller.guidance import navigator as navigator_module
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.settings import NavigatorSettings

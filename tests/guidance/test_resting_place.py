@@ -7,12 +7,8 @@ from hypothesis import strategies as st
 from standing_obstacles import StandingObstacles
 
 from gcs.config import read_system
-from idc_controller.geometry.box import Box, Wall
-from idc_controller.geometry.capsule import Capsule
-from idc_controller.geometry.mesh import Mesh, MeshHull
 from idc_controller.geometry.obstacles import PredictedObstacle
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Box, Capsule, Mesh, MeshHull, Pole, Sphere, Wall
 from idc_controller.guidance.resting_place import RestingPlace, least_distance
 from idc_controller.guidance.resting_place_kernels import least_distances
 from idc_controller.guidance.settings import RestingPlaceSettings

@@ -24,8 +24,7 @@ from mission_files import (
 from gcs.mission.model import Lissajous
 from gcs.mission.read import read_mission
 from gcs.mission.route import FlyTo, Land
-from idc_controller.geometry.box import Wall
-from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.shapes import Pole, Wall
 
 
 def test_description_of_hover() -> None:

@@ -10,7 +10,7 @@ from gcs.app.cli import main
 from gcs.errors import UnusableInput
 from gcs.mission.read import read_mission
 from gcs.view.mission_map import draw_map, least_clearance, swept_area, write_map
-from idc_controller.geometry.bounding_cylinder import BoundingCylinder
+from idc_controller.geometry.free_space import BoundingCylinder
 
 COURSE = """
 [mission]

@@ -25,8 +25,7 @@ from mission_files import (
 from gcs.flight.feasibility import preflight
 from gcs.mission.plan import read_plan
 from gcs.mission.route import FlyTo
-from idc_controller.geometry.box import Wall
-from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.shapes import Pole, Wall
 
 
 def test_survey_is_flown_by_its_stored_items(tmp_path: Path) -> None:

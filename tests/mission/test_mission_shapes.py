@@ -19,10 +19,7 @@ from gcs.record.clearance import Formation, ObstacleTrack
 from gcs.record.obstacle_shapes import OBSTACLE_SHAPES, read_shape, write_shapes
 from gcs.record.reader import read_json
 from idc_controller.errors import ShapeError
-from idc_controller.geometry.box import Box
-from idc_controller.geometry.capsule import Capsule
-from idc_controller.geometry.mesh import Mesh, MeshHull
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Box, Capsule, Mesh, MeshHull, Sphere
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
 
 OBSTACLES = """

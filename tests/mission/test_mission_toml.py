@@ -9,8 +9,7 @@ from gcs.config import UnusableFile
 from gcs.mission.model import Lissajous
 from gcs.mission.read import read_mission
 from gcs.mission.route import Route
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere
 
 
 def test_toml(tmp_path: Path) -> None:

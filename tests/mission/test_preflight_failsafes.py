@@ -16,7 +16,7 @@ from gcs.flight.preflight import Preflight
 from gcs.mavlink import px4
 from gcs.mavlink.link_queue import LinkQueue
 from idc_controller.estimation.measurements import PAYLOAD, Position
-from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.shapes import Pole
 from idc_controller.perception.standing_obstacles import MapObstacle, StandingObstacles
 
 PARAMETERS = read_system().parameters()

@@ -19,9 +19,7 @@ from gcs.reproduce.numbers import flight_numbers, model_numbers
 from gcs.reproduce.page import ABSENT, paper_text, rounded
 from gcs.reproduce.plan import plan
 from gcs.reproduce.simulation import Flown, simulate
-from idc_controller.geometry.box import Wall
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere, Wall
 from idc_controller.rotations import quaternion_from_euler
 
 pytestmark = pytest.mark.slow

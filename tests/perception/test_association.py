@@ -5,8 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from idc_controller.geometry.box import Wall
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Sphere, Wall
 from idc_controller.perception.association import associate, gating_shape
 
 

@@ -21,9 +21,7 @@ from obstacle_scene import (
 from gcs.config import RangeSensorConfig
 from gcs.flight.stack import known_obstacles, sensor_rays
 from gcs.mission.model import Obstacle
-from idc_controller.geometry.box import Wall
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere, Wall
 from idc_controller.perception import map_check
 from idc_controller.perception.standing_obstacles import StandingObstacles
 from idc_controller.perception.surfaces.flat import FlatSurface

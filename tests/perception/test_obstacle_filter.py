@@ -8,10 +8,8 @@ import numpy as np
 import pytest
 from obstacle_scene import DENSE, MOTIONS, NOISE, Scene, pole, random_motion, sphere, stop_and_go, wall
 
-from idc_controller.geometry.box import Wall
 from idc_controller.geometry.obstacles import Bodies
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere, Wall
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.obstacle_filter import ObstacleFilter
 from idc_controller.perception.settings import SurfaceSettings

@@ -11,9 +11,7 @@ from range_scene import occupied
 from gcs.flight import stack
 from gcs.mission.model import Obstacle
 from gcs.mission.read import read_mission
-from idc_controller.geometry.capsule import Capsule
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Capsule, Pole, Sphere
 from vehicle_sim.world.obstacle_bodies import Obstacle as WorldObstacle
 
 SIGMAS = 3.0

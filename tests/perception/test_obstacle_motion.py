@@ -9,7 +9,7 @@ from gcs.config import UnusableFile
 from gcs.mission.model import Obstacle
 from gcs.mission.motion import CircleMotion, HarmonicMotion, LinearMotion, RandomWalkMotion, WaypointsMotion
 from gcs.mission.read import read_mission
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Sphere
 from vehicle_sim.world.obstacle_bodies import MovingObstacles
 
 SQUARE = ((0.0, 0.0, 0.0), (2.0, 0.0, 0.0), (2.0, 1.0, 0.0))

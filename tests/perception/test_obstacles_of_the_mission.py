@@ -6,10 +6,8 @@ from obstacle_scene import map_of, moving_tracks, nearest, outside, pole, run, s
 
 from gcs.mission.model import Obstacle
 from gcs.mission.motion import HarmonicMotion
-from idc_controller.geometry.box import Wall
 from idc_controller.geometry.obstacles import Region
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere, Wall
 
 
 def test_standing_obstacles_of_the_map_are_predicted_from_the_start_and_not_seen_once_more():

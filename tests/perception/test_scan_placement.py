@@ -10,8 +10,7 @@ from range_scene import return_variance
 
 from gcs.config import RangeSensorConfig
 from idc_controller.estimation.measurements import Attitude, Position
-from idc_controller.geometry.box import Wall
-from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.shapes import Pole, Wall
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.range_sensors import SensorModel
 from idc_controller.perception.ray_pattern import RayPattern

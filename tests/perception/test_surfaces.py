@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from idc_controller.geometry.box import Box
+from idc_controller.geometry.shapes import Box
 from idc_controller.perception.settings import SurfaceSettings
 from idc_controller.perception.surfaces.flat import FlatSurface
 from idc_controller.perception.surfaces.known import KnownSurface

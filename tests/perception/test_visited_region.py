@@ -6,7 +6,7 @@ from moving_scene import BEGIN, SHAPES, watch
 from obstacle_scene import moving_tracks
 
 from idc_controller.geometry.obstacles import Bodies
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Sphere
 from idc_controller.perception.visited_region import VisitedRegion
 
 BALL = Sphere(0.5)

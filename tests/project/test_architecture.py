@@ -103,7 +103,6 @@ COMMON = {
         "compiled",
         "errors",
         "parameters",
-        "payload_hull",
         "rotations",
         "rotations_float",
         "settings",

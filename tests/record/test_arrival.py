@@ -19,7 +19,7 @@ from gcs.mission.targets import Target, targets_of
 from gcs.record.arrival import closest_in_order
 from gcs.record.run_data import read_run
 from gcs.record.run_folder import open_run_folder, write_manifest
-from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.shapes import Pole
 from vehicle_sim.world.obstacle_bodies import Obstacle
 from vehicle_sim.world.truth_log import TruthLog
 from vehicle_sim.world.world_state import UavState, WorldState

@@ -9,9 +9,7 @@ from gcs.record.run_data import read_run
 from gcs.record.run_folder import open_run_folder, write_json
 from gcs.record.tables import OBSTACLE_COLUMNS
 from gcs.view.page import report
-from idc_controller.geometry.box import Wall
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere, Wall
 from vehicle_sim.world.obstacle_bodies import Obstacle
 
 PNG = b"\x89PNG\r\n\x1a\n"

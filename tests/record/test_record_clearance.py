@@ -10,13 +10,9 @@ from hypothesis import strategies as st
 
 from gcs.errors import UnusableInput
 from gcs.record.clearance import DEFAULT_PAYLOAD, Formation, ObstacleTrack
-from idc_controller.geometry.box import Box, Wall
-from idc_controller.geometry.capsule import Capsule
-from idc_controller.geometry.mesh import Mesh, MeshHull
-from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.shape import Shape
-from idc_controller.geometry.sphere import Sphere
-from idc_controller.payload_hull import PayloadHull
+from idc_controller.geometry.shapes import Box, Capsule, Mesh, MeshHull, Pole, Sphere, Wall
+from idc_controller.parameters import PayloadHull
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 
 LEVEL = np.array([1.0, 0.0, 0.0, 0.0])

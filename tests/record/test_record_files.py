@@ -34,7 +34,7 @@ from gcs.record.tables import (
     truth_columns,
 )
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Channel, Position, SensorGroup
-from idc_controller.geometry.box import Wall
+from idc_controller.geometry.shapes import Wall
 from idc_controller.trajectory.integrator_chain import Chain
 from idc_controller.trajectory.stop_plan import StopPlan
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from idc_controller.geometry.obstacles import PredictedObstacle
-from idc_controller.geometry.sphere import Sphere
-from idc_controller.safety.alternatives import alternatives
+from idc_controller.geometry.shapes import Sphere
+from idc_controller.safety.safety_filter import alternatives
 from idc_controller.safety.separation import Separation
 
 STAGES, PERIOD = 9, 0.25

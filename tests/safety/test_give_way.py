@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from idc_controller.safety.give_way import give_way_time
+from idc_controller.safety.planner import give_way_time
 from idc_controller.safety.settings import PlannerSettings
 
 PLANNER = PlannerSettings()

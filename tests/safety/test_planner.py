@@ -10,11 +10,9 @@ from paper_system import system
 from proxsuite import proxqp
 
 from idc_controller.errors import ParameterError
-from idc_controller.geometry.box import Wall
 from idc_controller.geometry.formation import Formation
 from idc_controller.geometry.obstacles import PredictedObstacle
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere, Wall
 from idc_controller.qp.daqp_solver import DaqpSolver
 from idc_controller.safety.constraints.acceleration_bounds import AccelerationBounds
 from idc_controller.safety.constraints.constraint import Penalty, PlanningStep

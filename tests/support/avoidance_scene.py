@@ -10,10 +10,8 @@ from scipy.spatial import ConvexHull
 
 from gcs.planning.flight import IdealTracking
 from idc_controller.estimation.estimate import Estimate
-from idc_controller.geometry.box import Wall
 from idc_controller.geometry.obstacles import PredictedObstacle
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere, Wall
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.progress import AdaptiveGuidance
 from idc_controller.guidance.settings import NavigatorSettings, ProgressSettings

@@ -2,11 +2,7 @@
 
 import numpy as np
 
-from idc_controller.geometry.box import Box, Wall
-from idc_controller.geometry.capsule import Capsule
-from idc_controller.geometry.mesh import Mesh, MeshHull
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Box, Capsule, Mesh, MeshHull, Pole, Sphere, Wall
 
 ROCK = MeshHull("rock.stl", ((-1.0, -0.6, 0.5), (0.9, -0.7, 0.5), (1.0, 0.8, 0.5), (-0.8, 0.7, 0.4), (0.1, 0.0, -0.5)))
 EXAMPLES = [

@@ -8,8 +8,7 @@ from functools import cache
 import numpy as np
 from obstacle_scene import HERE, Scene, box, map_of, outside, pole, run, sphere, wall
 
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere
 
 #: From here on there is the obstacle; before, the space in view is seen free.
 BEGIN = 2.0

@@ -9,10 +9,8 @@ import numpy as np
 from gcs.config import RangeSensorConfig
 from gcs.flight.stack import known_obstacles, sensor_rays
 from idc_controller.estimation.measurements import Attitude, Position, VehicleStates
-from idc_controller.geometry.box import Box, Wall
 from idc_controller.geometry.obstacles import Bodies
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Box, Pole, Sphere, Wall
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.perception.range_sensors import SensorModel
 from idc_controller.perception.scan_placement import Returns, ScanEnd

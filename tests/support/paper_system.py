@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from idc_controller.parameters import SystemParameters, polygon_attachments
-from idc_controller.payload_hull import PayloadHull
+from idc_controller.parameters import PayloadHull, SystemParameters, polygon_attachments
 
 UNSYMMETRIC = np.array([[0.5, 0.4, -0.25], [0.3, -0.5, -0.2], [-0.5, -0.3, -0.25], [-0.4, 0.5, -0.1]])
 """Attachment points on the payload (4, 3) (m, payload frame)."""

@@ -4,7 +4,7 @@ import numpy as np
 from truth_rows import write_state
 
 from gcs.record.tables import PLAN_COLUMNS, REFERENCE_COLUMNS, STEP_COLUMNS, TableWriter
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Sphere
 from idc_controller.rotations import quaternion_from_euler
 from vehicle_sim.world.obstacle_bodies import Obstacle
 from vehicle_sim.world.truth_log import TruthLog

@@ -7,7 +7,7 @@ from truth_rows import write_state
 from gcs.record.run_data import read_run
 from gcs.record.safety import return_times
 from gcs.record.tables import REFERENCE_COLUMNS, TableWriter
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Sphere
 from vehicle_sim.world.obstacle_bodies import Obstacle
 from vehicle_sim.world.truth_log import TruthLog
 from vehicle_sim.world.world_state import UavState, WorldState

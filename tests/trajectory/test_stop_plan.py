@@ -7,8 +7,7 @@ from scipy.interpolate import BPoly
 from gcs.config import read_system
 from idc_controller.model.linear import StateLayout
 from idc_controller.trajectory.flatness import Load, flat_reference
-from idc_controller.trajectory.lissajous import LissajousTrajectory
-from idc_controller.trajectory.lissajous_curve import LissajousCurve
+from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
 from idc_controller.trajectory.settings import Limits
 from idc_controller.trajectory.stop_plan import Braking, stop_plan
 

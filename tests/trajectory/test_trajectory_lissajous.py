@@ -2,8 +2,7 @@ import numpy as np
 import pytest
 
 from idc_controller.errors import TrajectoryError
-from idc_controller.trajectory.lissajous import LissajousTrajectory
-from idc_controller.trajectory.lissajous_curve import LissajousCurve
+from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
 from idc_controller.trajectory.settings import Limits
 
 LIMITS = Limits(speed=4.5, acceleration=3.6, jerk=5.0, snap=6.0)

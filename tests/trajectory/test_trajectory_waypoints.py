@@ -10,9 +10,8 @@ from scipy.interpolate import BSpline
 
 from idc_controller.errors import TrajectoryError
 from idc_controller.trajectory.paths import Circle, Leg
-from idc_controller.trajectory.sampled_path import distance_to_line
+from idc_controller.trajectory.sampled_path import distance_to_line, smoothing_for
 from idc_controller.trajectory.settings import Limits
-from idc_controller.trajectory.smoothing import smoothing_for
 from idc_controller.trajectory.spline import SplineTrajectory
 from idc_controller.trajectory.trajectory import RestTrajectory
 from idc_controller.trajectory.waypoints import WaypointTrajectory

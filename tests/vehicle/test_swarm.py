@@ -13,9 +13,7 @@ from gcs.mavlink import px4
 from gcs.mission.model import Home, Obstacle
 from gcs.mission.motion import HarmonicMotion, LinearMotion
 from gcs.record.reader import read_table
-from idc_controller.geometry.box import Wall
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere, Wall
 from vehicle_sim.faults.fault_injector import FaultInjector
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.errors import SimulationError, UnsupportedWorld

@@ -28,8 +28,7 @@ from gcs.view.page import write_report
 from gcs.view.page_data import QUANTUM, Blob, PageData, command
 from gcs.view.page_events import events
 from gcs.view.poster import outline, write_poster
-from idc_controller.geometry.box import Wall
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Sphere, Wall
 from vehicle_sim.world.obstacle_bodies import Obstacle
 
 

@@ -8,7 +8,7 @@ from nonlinear_motion import hover_state
 from paper_system import system
 from world_runs import place
 
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Sphere
 from vehicle_sim.world import broad_phase_kernels
 from vehicle_sim.world.broad_phase_kernels import time_apart
 from vehicle_sim.world.world import World

@@ -11,12 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gcs.config import RangeSensorConfig
-from idc_controller.geometry.box import Box, Wall
-from idc_controller.geometry.capsule import Capsule
-from idc_controller.geometry.mesh import Mesh, MeshHull
 from idc_controller.geometry.obstacles import Bodies
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Box, Capsule, Mesh, MeshHull, Pole, Sphere, Wall
 from idc_controller.perception.ray_pattern import RayPattern
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies

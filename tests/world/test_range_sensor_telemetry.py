@@ -15,9 +15,7 @@ from gcs.flight.stack import sensor_rays
 from gcs.mavlink.codec import Codec
 from gcs.mission.model import Obstacle
 from gcs.mission.motion import HarmonicMotion
-from idc_controller.geometry.box import Wall
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere, Wall
 from idc_controller.perception.ray_pattern import scan_index
 from idc_controller.perception.scan_placement_kernels import rays_of_returns
 from vehicle_sim.faults.fault_injector import FaultInjector

@@ -9,9 +9,7 @@ from nonlinear_motion import hover_state, uav_positions
 from paper_system import system
 from world_runs import closest_distance, place, uav_array
 
-from idc_controller.geometry.box import Wall
-from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere, Wall
 from vehicle_sim.world.errors import SimulationError
 from vehicle_sim.world.ground import Ground
 from vehicle_sim.world.world import World

@@ -6,7 +6,7 @@ import pytest
 from paper_system import system
 from world_runs import closest_distance, run
 
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Sphere
 from vehicle_sim.world.world import World
 
 

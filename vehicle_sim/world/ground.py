@@ -6,7 +6,7 @@ import numpy as np
 import pybullet
 
 from gcs.config.tables import PadSettings
-from idc_controller.payload_hull import PayloadHull
+from idc_controller.parameters import PayloadHull
 from vehicle_sim.world.multibody import Multibody
 from vehicle_sim.world.world_state import flipped, product, upward_axis
 

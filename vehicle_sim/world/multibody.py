@@ -17,8 +17,7 @@ from scipy.spatial.transform import Rotation
 
 from gcs.config.tables import BodySettings
 from idc_controller.arrays import Array
-from idc_controller.parameters import SystemParameters
-from idc_controller.payload_hull import PayloadHull
+from idc_controller.parameters import PayloadHull, SystemParameters
 from vehicle_sim.world.errors import UnsupportedWorld
 
 # PyBullet exchanges at most 128 coordinates a body (MAX_DEGREE_OF_FREEDOM) and is silently wrong beyond:

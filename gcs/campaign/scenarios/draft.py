@@ -19,12 +19,9 @@ from gcs.mission.route import Route
 from gcs.mission.toml_mission import route_through
 from gcs.planning.schedule import Schedule
 from idc_controller.arrays import Array
-from idc_controller.geometry.bounding_cylinder import BoundingCylinder
-from idc_controller.geometry.box import Wall
-from idc_controller.geometry.free_space import FreeSpace
-from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.free_space import BoundingCylinder, FreeSpace
 from idc_controller.geometry.shape import Shape
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere, Wall
 from idc_controller.guidance.detour import find_detour
 
 END_CLEARANCE = 3.0

@@ -10,11 +10,9 @@ from gcs.config import SystemConfig
 from gcs.errors import GcsError
 from gcs.mission.model import Limits, Lissajous, Mission, Obstacle
 from gcs.planning.schedule import Schedule
-from idc_controller.geometry.bounding_cylinder import BoundingCylinder
-from idc_controller.geometry.free_space import FreeSpace
-from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.free_space import BoundingCylinder, FreeSpace
 from idc_controller.geometry.shape import Shape
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere
 
 FIELD = "field"
 AMPLITUDE, ANGULAR_FREQUENCY, ALTITUDE = (6.0, 3.0), 0.5, 3.0

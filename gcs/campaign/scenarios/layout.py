@@ -9,11 +9,9 @@ import numpy as np
 
 from gcs.campaign.scenarios.passage import Passage, Passages, Place
 from gcs.mission.model import Obstacle
-from idc_controller.geometry.box import Wall
 from idc_controller.geometry.free_space import FreeSpace
-from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.shape import Shape
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere, Wall
 
 Random = np.random.Generator
 

@@ -11,9 +11,8 @@ from gcs.config import SystemConfig
 from gcs.mission.fence import boundary_walls
 from gcs.mission.model import Mission, Obstacle
 from gcs.mission.route import FlyTo, Land, Route, TakeOff
-from idc_controller.geometry.bounding_cylinder import BoundingCylinder
-from idc_controller.geometry.flight_area import FlightArea
 from idc_controller.geometry.formation import Formation
+from idc_controller.geometry.free_space import BoundingCylinder, FlightArea
 from idc_controller.guidance.detour import find_detour
 from idc_controller.guidance.narrowest_gap import Gap, narrowest_gap
 

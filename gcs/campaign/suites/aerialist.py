@@ -24,8 +24,7 @@ from gcs.config.validate import Key, NotNegative, Positive, UnusableFile, dotted
 from gcs.mission.items import FARTHEST, FileHome, ItemError
 from gcs.mission.model import Obstacle
 from gcs.mission.read import read_mission
-from idc_controller.geometry.box import Wall
-from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.shapes import Pole, Wall
 
 KIND = "aerialist"
 _FLAT = ("l", "w", "h", "x", "y", "z", "r")

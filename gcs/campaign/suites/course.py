@@ -9,8 +9,7 @@ from gcs.campaign.scenarios.passage import Passage, passage_of
 from gcs.config import UnusableFile
 from gcs.mission.model import Mission, Obstacle
 from gcs.planning.schedule import Schedule
-from idc_controller.geometry.bounding_cylinder import BoundingCylinder
-from idc_controller.geometry.free_space import FreeSpace
+from idc_controller.geometry.free_space import BoundingCylinder, FreeSpace
 
 MOST_OBSTACLES = 1000
 AT_PAD = 0.1

@@ -20,8 +20,7 @@ from gcs.config.validate import Key, Positive, UnusableFile, dotted, strict, val
 from gcs.mission.items import FARTHEST, ITEM_LIMIT
 from gcs.mission.model import Mission, Name, Obstacle
 from gcs.mission.toml_mission import route_through, unreachable
-from idc_controller.geometry.box import Wall
-from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.shapes import Pole, Wall
 
 KIND = "list"
 _Coordinate = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST)]

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 
 from idc_controller.arrays import Array, Indices, Mask
-from idc_controller.geometry.box import Wall
+from idc_controller.geometry.shapes import Wall
 from idc_controller.perception.settings import SurfaceSettings
 from idc_controller.perception.surfaces.points import EndOfSurface, Fit, SurfacePoints, score, unexplained
 

@@ -3,9 +3,8 @@
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.shape import Shape
-from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere
 from idc_controller.perception.settings import SurfaceSettings
 from idc_controller.perception.surfaces.points import EndOfSurface, Fit, SurfacePoints
 from idc_controller.perception.surfaces.round_kernels import fitted_round
