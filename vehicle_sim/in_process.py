@@ -76,8 +76,7 @@ class InProcessWorld:
 
     def record_faults(self, faults: Disturbances, run_dir: Path) -> None:
         """Record at the end what ``faults`` have affected."""
-        from vehicle_sim.faults.fault_injector import FaultInjector
-        from vehicle_sim.faults.record import record_faults
+        from vehicle_sim.faults.fault_injector import FaultInjector, record_faults
 
         def record() -> None:
             assert isinstance(faults, FaultInjector)

@@ -4,8 +4,7 @@ import numpy as np
 
 from gcs.mission.model import Mission
 from idc_controller.arrays import Array
-from vehicle_sim.world.range_sensor import RangeSensor
-from vehicle_sim.world.ray_bodies import RayBodies
+from vehicle_sim.world.range_sensor import RangeSensor, RayBodies
 from vehicle_sim.world.sensors import Measurement, NavigationSensors, vehicle_noise
 
 _ROW = [0, 1, 2, 6, 7, 8, 9, 3, 4, 5, 10, 11, 12]

@@ -21,8 +21,7 @@ from idc_controller.guidance.resting_place import RestingPlace
 from idc_controller.guidance.sight import SensorView, Sight, SpeedBySight, closing_speed
 from idc_controller.model.linear import LinearModel
 from idc_controller.perception.obstacle_map import ObstacleMap
-from idc_controller.perception.range_sensors import SensorModel
-from idc_controller.perception.ray_pattern import RayPattern
+from idc_controller.perception.range_sensors import RayPattern, SensorModel
 from idc_controller.perception.scan_placement import SensorRays
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.standing_obstacles import MapObstacle

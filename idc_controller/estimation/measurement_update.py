@@ -1,18 +1,27 @@
 """Measurement update: innovations of one moment, their test, and the correction of the filter."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from idc_controller.arrays import Array, Mask
 from idc_controller.estimation.estimate import InnovationRecord
-from idc_controller.estimation.health.innovation_gate import InnovationGate
-from idc_controller.estimation.health.noise_adaptation import Reaction
+from idc_controller.estimation.health.chi_squared import lower_quantile
+from idc_controller.estimation.health.noise_adaptation import InnovationTest, Reaction
 from idc_controller.estimation.health.sensor_health import SensorHealth
 from idc_controller.estimation.measurement_model import MeasurementModel, ObservationStack
-from idc_controller.estimation.measurements import Position, median_of
+from idc_controller.estimation.measurements import Measurement, Position, SensorKey, median_of
 from idc_controller.estimation.propagation import ErrorStateFilter
-from idc_controller.estimation.replay import Moment
 from idc_controller.estimation.settings import EstimatorSettings
 from idc_controller.trajectory.flatness import FlatReference
+
+
+@dataclass
+class Moment:
+    """Measurements of one ``time`` (s) by source and kind; of the payload with all relayed copies."""
+
+    time: float
+    measurements: dict[SensorKey, list[Measurement]]
 
 
 class MeasurementUpdate:
@@ -20,7 +29,8 @@ class MeasurementUpdate:
 
     def __init__(self, model: MeasurementModel, health: SensorHealth, settings: EstimatorSettings) -> None:
         self._model, self._health, self._settings = model, health, settings
-        self._gate = InnovationGate(settings.gate_probability)
+        self._gates = lower_quantile(settings.gate_probability, np.arange(7))
+        """Normalised innovation squared that a nominal measurement does not exceed, by its size."""
 
     def apply(
         self, filter: ErrorStateFilter, moment: Moment, flat: FlatReference, k: int, adapt: bool
@@ -57,14 +67,14 @@ class MeasurementUpdate:
         if usable < len(present):
             stack, innovation = whole.subset(present), innovation.subset(present)
         keys, adaptation = stack.keys, health.adaptation
-        test = self._gate.test(innovation, stack, adaptation.measurement_scale)
+        test = InnovationTest.of(innovation, stack, adaptation.measurement_scale, self._gates)
         reaction = adaptation.react(moment.time, keys, test) if adapt else Reaction.NONE
         if reaction is Reaction.COVARIANCE_RESET:
             filter.inflate(filter.process.covariance_reset(filter.P, self._settings.reset))
             innovation = model.innovation(observation, samples, flat, k, filter.x, filter.P)
             innovation = innovation if stack is whole else innovation.subset(present)
         if reaction is not Reaction.NONE:
-            test = self._gate.test(innovation, stack, adaptation.measurement_scale)
+            test = InnovationTest.of(innovation, stack, adaptation.measurement_scale, self._gates)
         accepted = test.accepted_rows
         rejected = [c for c, good in enumerate(test.accepted.tolist()) if not good]
         poses = [keys[c] for c in rejected if keys[c][1] is Position or not accepted[stack.starts[c]]]

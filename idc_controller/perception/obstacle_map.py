@@ -11,8 +11,7 @@ from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.estimation.health.chi_squared import upper_quantile
 from idc_controller.geometry.obstacles import Bodies, PointGroups, PredictedObstacle, Region
 from idc_controller.geometry.shape import Shape
-from idc_controller.perception.association import associate, gating_shape
-from idc_controller.perception.clusters import Cluster, Segmentation, frames, shifted
+from idc_controller.perception.clusters import Cluster, Segmentation, associate, frames, gating_shape, shifted
 from idc_controller.perception.map_check import MapCheck
 from idc_controller.perception.motion_evidence import Frame
 from idc_controller.perception.motion_imm import MotionModels

@@ -9,9 +9,7 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.pose_history import PoseHistory
-from idc_controller.perception.range_sensors import RangeSensors, SensorModel
-from idc_controller.perception.ray_offset import RayOffset
-from idc_controller.perception.ray_pattern import RayPattern, scan_index
+from idc_controller.perception.range_sensors import RangeSensors, RayOffset, RayPattern, SensorModel, scan_index
 from idc_controller.perception.scan_placement_kernels import free_ends, placed_returns
 from idc_controller.perception.settings import ScanSettings
 from idc_controller.rotations import rotation_from_quaternion

@@ -9,9 +9,10 @@ own record of hits and passes makes improbable while they stand.
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from idc_controller.arrays import Array, Indices, Mask
@@ -22,23 +23,69 @@ from idc_controller.perception import map_query_kernels as queries
 from idc_controller.perception import upright_box_kernels as boxes
 from idc_controller.perception.carving_kernels import carve, followed_rays, release
 from idc_controller.perception.placed_scan import PlacedScan
-from idc_controller.perception.return_kernels import add_returns
+from idc_controller.perception.return_kernels import add_returns, capacity_for, enter_pages
 from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.sight_kernels import first_hidden, unseen_cells
 from idc_controller.perception.voxel_kernels import (
     BLOCKS,
     BORN,
+    CELLS,
     CHANGE,
+    COLUMNS,
     EDGE,
     HITS,
     KEY,
     MEAN,
     NUMBER,
+    PAGE_BLOCKS,
+    PAGES,
     SURFACE,
     USED,
+    Rays,
     Rules,
+    Voxels,
 )
-from idc_controller.perception.voxel_store import no_voxels, reserved
+
+_FIRST_PAGES, _FIRST_BLOCKS, _FIRST_ELEMENTS = 16, 4096, 4096
+
+
+def no_voxels() -> Voxels:
+    """Return the voxels of a map without scans."""
+    return Voxels(
+        table=np.full((4 * _FIRST_PAGES, 2), -1),
+        pages=np.full((_FIRST_PAGES, PAGE_BLOCKS), -1, dtype=np.int32),
+        blocks=np.zeros((_FIRST_BLOCKS, 4), dtype=np.int64),
+        cells=np.zeros((_FIRST_BLOCKS, CELLS), dtype=np.uint8),
+        links=np.zeros((_FIRST_BLOCKS, CELLS), dtype=np.int32),
+        elements=np.zeros((_FIRST_ELEMENTS, COLUMNS)),
+        counts=np.zeros(5, dtype=np.int64),
+    )
+
+
+def reserved(voxels: Voxels, size: float, rays: Rays) -> Voxels:
+    """Return ``voxels`` of that ``size`` (m) with capacity for all that a scan can add."""
+    blocks, pages = capacity_for(rays, EDGE * size)
+    number = voxels.counts.tolist()
+    if number[PAGES] + pages > len(voxels.pages):
+        grown = _grown(voxels.pages, number[PAGES] + pages, -1)
+        voxels = voxels._replace(pages=grown, table=np.full((4 << (len(grown) - 1).bit_length(), 2), -1))
+        enter_pages(voxels.table, voxels.pages, voxels.blocks, number[PAGES])
+    if (rows := number[BLOCKS] + blocks) > len(voxels.blocks):
+        grown_of = {name: _grown(getattr(voxels, name), rows) for name in ("blocks", "cells", "links")}
+        voxels = voxels._replace(**grown_of)
+    if (rows := number[USED] + len(rays.returns)) > len(voxels.elements):
+        voxels = voxels._replace(elements=_grown(voxels.elements, rows))
+    return voxels
+
+
+def _grown(rows: NDArray[Any], count: int, value: int = 0) -> NDArray[Any]:
+    """Return ``rows`` with ``count`` of them or more, at least twice as many as before."""
+    shape = max(count, 2 * len(rows)), *rows.shape[1:]
+    # Zeros take no memory until they are written to.
+    grown = np.full(shape, value, dtype=rows.dtype) if value else np.zeros(shape, dtype=rows.dtype)
+    grown[: len(rows)] = rows
+    return grown
+
 
 _ALL = np.empty(0, dtype=np.int64)
 

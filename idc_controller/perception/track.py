@@ -9,12 +9,12 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.shape import Shape
+from idc_controller.perception.manoeuvre import VisitedRegion
 from idc_controller.perception.motion_evidence import NO_SCANS, Frame, MotionEvidence, PartOfScan
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.obstacle_filter import ObstacleFilter
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.surfaces.points import SurfacePoints, joined
-from idc_controller.perception.visited_region import VisitedRegion
 
 
 @dataclass(eq=False)

@@ -8,8 +8,7 @@ import numpy as np
 
 from idc_controller.arrays import Array, Mask
 from idc_controller.geometry.obstacles import Bodies, PointGroups
-from idc_controller.perception.association import gating_shape
-from idc_controller.perception.clusters import Cluster
+from idc_controller.perception.clusters import Cluster, gating_shape
 from idc_controller.perception.motion_evidence import Frame, MotionEvidence, Normals, PartOfScan, unknown_normals
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.obstacle_filter import ObstacleFilter

@@ -6,8 +6,7 @@ import pytest
 from gcs.config import read_system
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
-from vehicle_sim.app.arguments import parse
-from vehicle_sim.app.client_ports import ClientPorts
+from vehicle_sim.app.arguments import ClientPorts, parse
 from vehicle_sim.faults.fault_injector import FaultInjector
 from vehicle_sim.swarm import Swarm
 

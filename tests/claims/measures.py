@@ -21,7 +21,7 @@ from gcs.config import SystemConfig
 from gcs.flight.stack import reaction_time, speed_by_sight, tilted_formation
 from idc_controller.model.linear import LinearModel
 from idc_controller.parameters import SystemParameters
-from idc_controller.perception.ray_pattern import RayPattern
+from idc_controller.perception.range_sensors import RayPattern
 
 ROOT = Path(__file__).parents[2]
 _HISTORY = ROOT / "tests" / "benchmarks" / "history.csv"

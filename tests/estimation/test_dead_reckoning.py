@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from quaternions import quaternion_product
 
-from idc_controller.estimation.health.dead_reckoning import DeadReckoning
+from idc_controller.estimation.health.sensor_health import DeadReckoning
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position, SampleStack, SensorGroup
 from idc_controller.estimation.settings import DeadReckoningSettings
 from idc_controller.rotations import quaternion_from_euler

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from idc_controller.estimation.health.stuck_sensor import StuckSensors
+from idc_controller.estimation.health.sensor_health import StuckSensors
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, MeasurementNoise, Position
 
 NOISE = MeasurementNoise()

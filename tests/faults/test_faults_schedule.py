@@ -7,9 +7,8 @@ import pytest
 from fault_injection import SYSTEM, TAKE_OFF, codec_frames, fault, injected, position, reported, sent
 
 from gcs.faults import KINDS
-from vehicle_sim.faults.fault_injector import FaultInjector
-from vehicle_sim.faults.record import faults_record
-from vehicle_sim.faults.schedule import Schedule
+from vehicle_sim.faults.active import Schedule
+from vehicle_sim.faults.fault_injector import FaultInjector, faults_record
 
 RANDOM = (
     "packet_loss", "burst_loss", "jitter", "reordering", "duplication", "corruption", "bad_checksum", "truncation",

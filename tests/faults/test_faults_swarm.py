@@ -13,8 +13,7 @@ from scripted_ground import ScriptedGround, exchange
 from gcs.record.faults import fault_notes
 from gcs.record.reader import read_table
 from vehicle_sim.faults.active import ActiveFault
-from vehicle_sim.faults.fault_injector import FaultInjector
-from vehicle_sim.faults.record import record_faults
+from vehicle_sim.faults.fault_injector import FaultInjector, record_faults
 from vehicle_sim.faults.world import Wind, WorldFaults
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.truth_log import TruthLog

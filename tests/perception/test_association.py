@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from idc_controller.geometry.shapes import Sphere, Wall
-from idc_controller.perception.association import associate, gating_shape
+from idc_controller.perception.clusters import associate, gating_shape
 
 
 def cluster(uav):

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from gcs.config import RangeSensorConfig
-from idc_controller.perception.ray_offset import RayOffset
-from idc_controller.perception.ray_pattern import RayPattern
+from idc_controller.perception.range_sensors import RayOffset, RayPattern
 from idc_controller.perception.settings import ScanSettings
 
 CONFIG, S = RangeSensorConfig(), ScanSettings()

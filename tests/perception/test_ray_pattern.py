@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import KDTree
 
-from idc_controller.perception.ray_pattern import RayPattern, scan_index
+from idc_controller.perception.range_sensors import RayPattern, scan_index
 
 FIELDS = [(500, -70.0, 30.0), (200, -50.0, 30.0), (1000, -7.0, 52.0), (300, -15.0, 15.0)]
 

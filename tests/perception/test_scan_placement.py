@@ -12,8 +12,7 @@ from gcs.config import RangeSensorConfig
 from idc_controller.estimation.measurements import Attitude, Position
 from idc_controller.geometry.shapes import Pole, Wall
 from idc_controller.perception.placed_scan import PlacedScan
-from idc_controller.perception.range_sensors import SensorModel
-from idc_controller.perception.ray_pattern import RayPattern
+from idc_controller.perception.range_sensors import RayPattern, SensorModel
 from idc_controller.perception.scan_placement import Returns, ScanEnd, ScanPlacement, SensorRays
 from idc_controller.perception.scan_placement_kernels import (
     free_ends,
@@ -23,8 +22,7 @@ from idc_controller.perception.scan_placement_kernels import (
 )
 from idc_controller.perception.settings import ScanSettings
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
-from vehicle_sim.world.range_sensor import RangeSensor
-from vehicle_sim.world.ray_bodies import RayBodies
+from vehicle_sim.world.range_sensor import RangeSensor, RayBodies
 from vehicle_sim.world.ray_cast_kernels import first_hits
 from vehicle_sim.world.sensors import Measurement
 

@@ -10,7 +10,7 @@ from range_scene import return_variance
 from gcs.mission.read import read_mission
 from idc_controller.geometry.obstacles import Bodies
 from idc_controller.perception.scan_placement import ScanPlacement
-from vehicle_sim.world.ray_bodies import RayBodies
+from vehicle_sim.world.range_sensor import RayBodies
 from vehicle_sim.world.ray_cast_kernels import first_hits
 
 pytestmark = pytest.mark.slow

@@ -7,7 +7,7 @@ from obstacle_scene import moving_tracks
 
 from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.shapes import Sphere
-from idc_controller.perception.visited_region import VisitedRegion
+from idc_controller.perception.manoeuvre import VisitedRegion
 
 BALL = Sphere(0.5)
 

@@ -17,8 +17,7 @@ from idc_controller.perception.scan_placement import Returns, ScanEnd
 from idc_controller.perception.surfaces.points import SurfacePoints, joined
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 from vehicle_sim.world.obstacle_bodies import Obstacle
-from vehicle_sim.world.range_sensor import RangeSample, RangeSensor
-from vehicle_sim.world.ray_bodies import RayBodies
+from vehicle_sim.world.range_sensor import RangeSample, RangeSensor, RayBodies
 from vehicle_sim.world.sensors import Measurement
 
 REACH, NOISE = 10.0, 0.05

@@ -12,7 +12,7 @@ from gcs.config.tables import WorldConfig
 from idc_controller.model.nonlinear import accelerations
 from idc_controller.rotations import rotation_from_quaternion
 from idc_controller.rotations_float import into_body
-from vehicle_sim.world.contact_detection import ContactDetector
+from vehicle_sim.world.ground import ContactDetector
 from vehicle_sim.world.world_state import flipped, quaternion_to_engine
 
 STANDING_ON_PAD = -0.30

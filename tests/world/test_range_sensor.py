@@ -13,11 +13,10 @@ from hypothesis import strategies as st
 from gcs.config import RangeSensorConfig
 from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.shapes import Box, Capsule, Mesh, MeshHull, Pole, Sphere, Wall
-from idc_controller.perception.ray_pattern import RayPattern
+from idc_controller.perception.range_sensors import RayPattern
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
-from vehicle_sim.world.range_sensor import RangeSensor
-from vehicle_sim.world.ray_bodies import RayBodies
+from vehicle_sim.world.range_sensor import RangeSensor, RayBodies
 from vehicle_sim.world.ray_cast_kernels import first_hits, measured_returns
 from vehicle_sim.world.sensors import Measurement
 from vehicle_sim.world.world_state import flipped

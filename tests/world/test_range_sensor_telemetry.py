@@ -16,7 +16,7 @@ from gcs.mavlink.codec import Codec
 from gcs.mission.model import Obstacle
 from gcs.mission.motion import HarmonicMotion
 from idc_controller.geometry.shapes import Pole, Sphere, Wall
-from idc_controller.perception.ray_pattern import scan_index
+from idc_controller.perception.range_sensors import scan_index
 from idc_controller.perception.scan_placement_kernels import rays_of_returns
 from vehicle_sim.faults.fault_injector import FaultInjector
 from vehicle_sim.mavlink.scan_kernels import nearest_by_sector

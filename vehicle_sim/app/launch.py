@@ -22,15 +22,12 @@ from gcs.mission.read import read_mission
 from gcs.numerics import differences
 from gcs.record.incomplete import INCOMPLETE, IncompleteRecords, in_one_line
 from gcs.record.run_folder import NewRunFolder, UnwritableFile, check_run_folder, write_manifest
-from vehicle_sim.app.client_ports import ClientPorts
+from vehicle_sim.app.arguments import ClientPorts
+from vehicle_sim.app.drivers import LOG, LockstepDriver, RealTimeDriver
 from vehicle_sim.app.ending import Ending
-from vehicle_sim.app.lockstep import LockstepDriver
-from vehicle_sim.app.realtime import RealTimeDriver
 from vehicle_sim.app.sockets import SwarmSockets, url
-from vehicle_sim.app.swarm_log import LOG
 from vehicle_sim.swarm import Swarm
-from vehicle_sim.world.display import check_display
-from vehicle_sim.world.engine_messages import messages_of_engine_aside
+from vehicle_sim.world.engine_messages import check_display, messages_of_engine_aside
 from vehicle_sim.world.truth_log import TruthLog
 
 if TYPE_CHECKING:
@@ -146,7 +143,7 @@ def _truth_log(
 def _report_faults(options: Namespace, injector: FaultInjector, swarm: Swarm, incomplete: IncompleteRecords) -> None:
     """Record what the faults affected, and print notes on those that affected nothing."""
     from gcs.record.faults import FAULTS_FILE, notes_of
-    from vehicle_sim.faults.record import faults_record, record_faults
+    from vehicle_sim.faults.fault_injector import faults_record, record_faults
 
     if options.run_dir is not None:
         try:

@@ -1,13 +1,83 @@
 """A fault of a flight: its parameters, its schedule, its random numbers, and what it has done."""
 
+import math
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
 from gcs.faults import KINDS, Direction, Kind, read_settings
 from gcs.mission.model import Fault
-from vehicle_sim.faults.schedule import Schedule
+
+TOLERANCE = 1e-6  # s: sums of steps are not exact, and drivers round to microseconds
+
+
+class Moment(NamedTuple):
+    """A time at which a fault is active: since when (s), and in which of its occurrences, from 0."""
+
+    elapsed: float
+    occurrence: int
+
+
+class Schedule:
+    """Start (s after take-off), duration (s; None: no end), period (s; None: once) and how often (None: no end)."""
+
+    def __init__(
+        self, start: float, duration: float | None = None, every: float | None = None, times: int | None = None
+    ) -> None:
+        self._start = start
+        self._duration = math.inf if duration is None else duration
+        self._every = every
+        self._last = 0 if every is None else math.inf if times is None else times - 1
+        self.take_off: float | None = None
+        """Time at which the first vehicle lifted off (s); None: not yet, and no fault is active."""
+
+    def at(self, now: float) -> Moment | None:
+        """Return where ``now`` (s) is in the fault; None: the fault is not active."""
+        if self.take_off is None:
+            return None
+        elapsed = now - self.take_off - self._start + TOLERANCE
+        if elapsed < 0.0:
+            return None
+        occurrence = 0
+        if self._every is not None:
+            occurrence = int(min(elapsed // self._every, self._last))
+            elapsed -= occurrence * self._every
+        if elapsed >= self._duration:
+            return None
+        return Moment(max(elapsed - TOLERANCE, 0.0), occurrence)
+
+    def end_after(self, now: float) -> float:
+        """Return when the occurrence that is active ``now`` ends (s; infinity: never)."""
+        moment = self.at(now)
+        return math.inf if moment is None else now - moment.elapsed + self._duration
+
+    def active_time(self, now: float) -> float:
+        """Return for how long in all the fault has been active until ``now`` (s)."""
+        if self.take_off is None:
+            return 0.0
+        elapsed = now - self.take_off - self._start
+        if elapsed <= 0.0:
+            return 0.0
+        if self._every is None:
+            return min(elapsed, self._duration)
+        whole = min(elapsed // self._every, self._last)
+        return whole * self._duration + min(elapsed - whole * self._every, self._duration)
+
+    def occurrences(self, now: float, limit: int) -> tuple[int, list[tuple[float, float | None]]]:
+        """Return the number of occurrences until ``now``, and begin and end of the first ``limit``.
+
+        In s after take-off; an end is None while the occurrence is not over.
+        """
+        if self.take_off is None or now - self.take_off + TOLERANCE < self._start:
+            return 0, []
+        flown = now - self.take_off + TOLERANCE
+        count = 1
+        if self._every is not None:
+            count = int(min((flown - self._start) // self._every, self._last)) + 1
+        begins = [self._start + k * (self._every or 0.0) for k in range(min(count, limit))]
+        return count, [(b, b + self._duration if b + self._duration <= flown else None) for b in begins]
+
 
 _STREAM = 2_000_003  # separates these generators from the sensors'
 WORLD = 0  # in place of a vehicle, of faults that disturb none

@@ -2,15 +2,17 @@
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TypeVar
+from pathlib import Path
+from typing import Any, TypeVar
 
 from gcs.config import SystemConfig
 from gcs.mission.model import Fault
+from gcs.record.faults import FAULTS_FILE
+from gcs.record.run_folder import write_json
 from vehicle_sim.faults import link, sensors, timing, values  # noqa: F401 -- each has impairments of its kinds
 from vehicle_sim.faults.active import ActiveFault
 from vehicle_sim.faults.disturbances import Datagram, Disturbances, Forces
-from vehicle_sim.faults.impairment import LinkImpairment
-from vehicle_sim.faults.samples import OWN, PAYLOAD, REPORTED, SCAN, SampleImpairment
+from vehicle_sim.faults.impairment import OWN, PAYLOAD, REPORTED, SCAN, LinkImpairment, SampleImpairment
 from vehicle_sim.faults.world import WorldFaults
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
@@ -141,3 +143,35 @@ class FaultInjector(Disturbances):
         """Return when the next delayed datagram is due."""
         due = [timer for impairment in self._link_impairments if (timer := impairment.next_timer()) is not None]
         return min(due, default=None)
+
+
+_LISTED = 1000  # occurrences that are listed
+
+
+def record_faults(folder: Path, injector: FaultInjector, end: float) -> Path:
+    """Write the file; ``end`` of the flight in s. Raises :class:`gcs.record.run_folder.UnwritableFile`."""
+    return write_json(folder / FAULTS_FILE, faults_record(injector, end))
+
+
+def faults_record(injector: FaultInjector, end: float) -> dict[str, Any]:
+    """Return the content of the file."""
+    take_off = injector.faults[0].schedule.take_off if injector.faults else None
+    return {
+        "take_off_s": take_off,
+        "end_s": end,
+        "faults": [
+            {
+                "number": fault.number,
+                "kind": fault.fault.kind,
+                "line": fault.fault.line,
+                "start": fault.fault.start,
+                "vehicles": list(fault.vehicles) if fault.kind.of_vehicles else None,
+                "direction": fault.direction,
+                "occurrences": (happened := fault.schedule.occurrences(end, _LISTED))[0],
+                "activations": happened[1],
+                "seen": fault.seen,
+                "disturbed": fault.disturbed,
+            }
+            for fault in injector.faults
+        ],
+    }

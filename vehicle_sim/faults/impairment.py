@@ -2,15 +2,46 @@
 
 import heapq
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
-from typing import ClassVar
+from collections.abc import Iterator, Mapping, Sequence
+from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 
+from gcs.config import SystemConfig
 from gcs.faults import Direction
-from vehicle_sim.faults.active import ActiveFault
+from gcs.mavlink.frames import V2, spans
+from vehicle_sim.faults.active import TOLERANCE, ActiveFault, Moment
 from vehicle_sim.faults.disturbances import Datagram
-from vehicle_sim.faults.schedule import TOLERANCE, Moment
+from vehicle_sim.world.range_sensor import RangeSample
+from vehicle_sim.world.sensors import Measurement, ReportedState
+
+
+class Frame(NamedTuple):
+    """A frame, from ``start`` to ``end`` in the datagram; ``checksum``: offset of its checksum.
+
+    ``stamp``: the first four bytes of the payload, which in all streamed measurements and set-points are a time.
+    """
+
+    start: int
+    end: int
+    checksum: int
+    system: int
+    component: int
+    message_id: int
+    stamp: bytes
+
+
+def frames(datagram: bytes) -> Iterator[Frame]:
+    """Yield the frames in order; bytes before, between and behind them are skipped."""
+    for start, end in spans(datagram):
+        if datagram[start] == V2:
+            system, component, body = datagram[start + 5], datagram[start + 6], start + 10
+            number = int.from_bytes(datagram[start + 7 : body], "little")
+        else:
+            system, component, number = datagram[start + 3 : start + 6]
+            body = start + 6
+        length = datagram[start + 1]
+        yield Frame(start, end, body + length, system, component, number, datagram[body : body + min(length, 4)])
 
 
 class LinkImpairment(ABC):
@@ -123,3 +154,43 @@ class GilbertElliottProcess:
 
     def _length(self) -> float:
         return self._means[self._bad] * float(self._generator.standard_exponential())
+
+
+OWN, REPORTED, PAYLOAD, SCAN = "own", "reported", "payload", "scan"
+
+
+class SampleImpairment:
+    """No change: every method returns its sample. ``acts_on`` names the methods that a kind of fault overrides."""
+
+    of_kind: ClassVar[dict[type, type["SampleImpairment"]]] = {}
+    """The impairment of each kind of fault, by the kind's parameters or their base class."""
+    acts_on: frozenset[str] = frozenset()
+
+    def __init_subclass__(cls, of: type | None = None) -> None:
+        """``of``: parameters of the kind of fault, or their base class."""
+        if of is not None:
+            SampleImpairment.of_kind[of] = cls
+
+    def __init__(self, fault: ActiveFault, vehicle: int, system: SystemConfig) -> None:
+        self.fault = fault
+
+    @classmethod
+    def of_vehicles(cls, fault: ActiveFault, system: SystemConfig) -> Mapping[int, Self]:
+        """Return the impairment of each vehicle that the fault disturbs."""
+        return {vehicle: cls(fault, vehicle, system) for vehicle in fault.vehicles}
+
+    def own(self, vehicle: int, sample: Measurement, moment: Moment) -> Measurement | None:
+        """Return what the vehicle's autopilot gets."""
+        return sample
+
+    def reported(self, vehicle: int, report: ReportedState, moment: Moment) -> ReportedState:
+        """Return what the vehicle reports of itself."""
+        return report
+
+    def payload(self, vehicle: int, sample: Measurement, moment: Moment) -> Measurement | None:
+        """Return what the vehicle relays of the payload's navigation unit."""
+        return sample
+
+    def scan(self, vehicle: int, sample: RangeSample, moment: Moment) -> RangeSample:
+        """Return what the vehicle detects."""
+        return sample

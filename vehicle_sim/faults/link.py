@@ -1,10 +1,15 @@
 """Impairments of a link, one class a kind of fault."""
 
 from gcs.faults import link as kinds
+from vehicle_sim.faults.active import TOLERANCE, Moment
 from vehicle_sim.faults.disturbances import Datagram
-from vehicle_sim.faults.frames import frames
-from vehicle_sim.faults.impairment import DatagramChange, GilbertElliottProcess, LinkImpairment, OrderedImpairment
-from vehicle_sim.faults.schedule import TOLERANCE, Moment
+from vehicle_sim.faults.impairment import (
+    DatagramChange,
+    GilbertElliottProcess,
+    LinkImpairment,
+    OrderedImpairment,
+    frames,
+)
 
 
 class PacketLoss(DatagramChange, of=kinds.PacketLoss):

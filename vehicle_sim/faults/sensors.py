@@ -4,9 +4,8 @@ import math
 
 from gcs.config import SystemConfig
 from gcs.faults import sensors as kinds
-from vehicle_sim.faults.active import ActiveFault
-from vehicle_sim.faults.samples import OWN, PAYLOAD, REPORTED, SCAN, SampleImpairment
-from vehicle_sim.faults.schedule import Moment
+from vehicle_sim.faults.active import ActiveFault, Moment
+from vehicle_sim.faults.impairment import OWN, PAYLOAD, REPORTED, SCAN, SampleImpairment
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
 

@@ -4,11 +4,8 @@ import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.faults import timing as kinds
-from vehicle_sim.faults.active import ActiveFault
-from vehicle_sim.faults.frames import Frame, frames
-from vehicle_sim.faults.impairment import DatagramChange
-from vehicle_sim.faults.samples import PAYLOAD, REPORTED, SCAN, SampleImpairment
-from vehicle_sim.faults.schedule import Moment
+from vehicle_sim.faults.active import ActiveFault, Moment
+from vehicle_sim.faults.impairment import PAYLOAD, REPORTED, SCAN, DatagramChange, Frame, SampleImpairment, frames
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
 

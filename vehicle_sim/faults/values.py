@@ -9,10 +9,8 @@ import numpy as np
 from gcs.config import SystemConfig
 from gcs.faults import values as kinds
 from idc_controller.rotations_float import Vector, quaternion_of, rotation_vector
-from vehicle_sim.faults.active import WORLD, ActiveFault
-from vehicle_sim.faults.impairment import GilbertElliottProcess
-from vehicle_sim.faults.samples import OWN, PAYLOAD, REPORTED, SCAN, SampleImpairment
-from vehicle_sim.faults.schedule import Moment
+from vehicle_sim.faults.active import WORLD, ActiveFault, Moment
+from vehicle_sim.faults.impairment import OWN, PAYLOAD, REPORTED, SCAN, GilbertElliottProcess, SampleImpairment
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
 

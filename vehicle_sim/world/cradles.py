@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import pybullet
 
 from gcs.config.tables import CradleSettings
-from vehicle_sim.world.velocity_correction import Uavs
+from vehicle_sim.world.readings import Uavs
 
 # Upper bound of what a cradle bears (N): far above any load of this size of system.
 _MAX_FORCE = 1e4

@@ -11,7 +11,7 @@ from idc_controller.errors import ShapeError
 from idc_controller.geometry.shape import Shape
 from idc_controller.rotations_float import Quaternion, Vector
 from vehicle_sim.world.errors import SimulationError
-from vehicle_sim.world.ray_bodies import RayBodies
+from vehicle_sim.world.range_sensor import RayBodies
 from vehicle_sim.world.world_state import flipped, quaternion_to_engine
 
 _FAR_AWAY = 1e6  # m

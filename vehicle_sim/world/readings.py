@@ -1,28 +1,63 @@
-"""What the engine says after each step, and the true states that follow from it."""
+"""What the engine says after each step, the true states that follow from it, and the loads that its motion lacks."""
 
+import math
+import struct
 from collections.abc import Sequence
 
+import numpy as np
 import pybullet
 
 from idc_controller.arrays import Array
 from idc_controller.parameters import SystemParameters
-from vehicle_sim.world.ground import Pose
+from vehicle_sim.world.link_force_kernels import link_tensions
 from vehicle_sim.world.multibody import Multibody
-from vehicle_sim.world.velocity_correction import Uavs, VelocityCorrection
+from vehicle_sim.world.state_kernels import (
+    AXIS,
+    LOAD_COLUMNS,
+    MEMORY_COLUMNS,
+    PART_COLUMNS,
+    READING_COLUMNS,
+    STATE_COLUMNS,
+    states_from_engine,
+)
+from vehicle_sim.world.world_state import flipped, rotated, upward_axis
+
+Pose = tuple[tuple[float, float, float], tuple[float, float, float, float]]
+"""Position and x-first quaternion in the engine's frame."""
+Uavs = Sequence[tuple[tuple[float, ...], ...]]
+"""States of the UAVs: position, attitude, four that are not used, velocity, angular velocity."""
+ACCELEROMETER_RANGE = 8.0 * 9.80665
+"""m/s2: full scale of the accelerometers of payload and vehicles, one of those that IMUs offer (8 g).
+
+The engine stops a part within one step: a contact of more than about 0.2 m/s exceeds it.
+"""
 
 
 class Readings:
-    """What the engine gives after a step, in its own frames.
+    """What the engine gave after the last two steps: its velocities are half a step older than its poses.
 
     Attributes:
-        payload: pose of the payload's principal axes.
-        uavs: states of the UAVs.
+        payload: pose of the payload's principal axes, in the engine's frame.
+        uavs: states of the UAVs, in the engine's frame.
+        states: the true states of payload and UAVs (N + 1, 13) as in :mod:`.state_kernels`; to be read only.
+        loads: on payload and UAVs (N + 1, 6) as in :mod:`.state_kernels`, that the next step lacks. They hold while
+            nothing but the links acts on a part by contact; to be used at once.
     """
 
     def __init__(self, client: int, system: Multibody, parameters: SystemParameters, physics_step: float) -> None:
         """Read the state now; ``physics_step`` in s."""
         self._system, self._client = system, client
-        self._correction = VelocityCorrection(system, parameters, physics_step)
+        rows = len(system.uavs) + 1
+        self._physics_step, self._free_steps = physics_step, 0
+        self._payload_in_axes, self._gravity = np.array(system.payload_in_axes), parameters.g
+        self._now, self._before = np.zeros((rows, READING_COLUMNS)), np.zeros((rows, READING_COLUMNS))
+        self._parts, self._memory = np.zeros((rows, PART_COLUMNS)), np.zeros((rows, MEMORY_COLUMNS))
+        self.set_payload_moments(system.payload_moments)
+        for i, (J_i, m_i, p_i) in enumerate(zip(parameters.J, parameters.m, parameters.p, strict=True), start=1):
+            self._parts[i] = *np.diag(J_i), m_i, *rotated(system.payload_in_axes, flipped(p_i))
+        # A third of the time that an assignment of lists takes.
+        self._pack = struct.Struct(f"{self._now.size}d").pack_into
+        self.loads = np.empty((rows, LOAD_COLUMNS))
         self.update()
         self.restart()
 
@@ -31,7 +66,12 @@ class Readings:
 
         An impact is no acceleration by which velocities could be brought forward.
         """
-        self._correction.restart(pybullet.getLinkStates(self._system.body, self._system.links, 1, 1, self._client))
+        self._free_steps = 0
+        links = pybullet.getLinkStates(self._system.body, self._system.links, 1, 1, self._client)
+        for row, (_, turn, _, _, _, _, _, w) in zip(self._memory[1:], links, strict=True):
+            axis = upward_axis(turn)
+            row[AXIS:] = *axis, np.dot(axis, w)
+        self._evaluate()
 
     def update(self) -> None:
         """Read the state after a step.
@@ -42,27 +82,42 @@ class Readings:
         body, client = self._system.body, self._client
         self.uavs: Uavs = pybullet.getLinkStates(body, self._system.uavs, 1, 1, client)
         self.payload: Pose = pybullet.getBasePositionAndOrientation(body, client)
-        self._correction.take(self.payload, pybullet.getBaseVelocity(body, client), self.uavs)
+        velocity, rates = pybullet.getBaseVelocity(body, client)
+        self._now, self._before = self._before, self._now
+        position, attitude = self.payload
+        numbers = [*position, *attitude, *velocity, *rates]
+        for place, turn, _, _, _, _, v, w in self.uavs:
+            numbers += (*place, *turn, *v, *w)
+        self._pack(self._now.data, 0, *numbers)
+        self._free_steps += 1
+        self._evaluate()
 
-    def velocity_changes(self) -> list[list[float]]:
-        """Return by how much the velocities of payload and UAVs (N + 1) changed in the last step (m/s, z up)."""
-        return self._correction.velocity_changes()
+    def clipped(self) -> list[int]:
+        """Return whose specific force exceeded the accelerometer's range in the last step: 0 the payload's, 1 .. N."""
+        hz = round(1.0 / self._physics_step)
+        changes = (self._now[:, 7:10] - self._before[:, 7:10]).tolist()
+        forces = [math.hypot(x * hz, y * hz, z * hz + self._gravity) for x, y, z in changes]
+        return [i for i, force in enumerate(forces) if force > ACCELEROMETER_RANGE]
 
     def link_tensions(self, thrusts: Sequence[float], external: Sequence[Sequence[float]] | None) -> list[float]:
-        """Return the tension of each link in the last step (N) (N): see :class:`VelocityCorrection`."""
-        return self._correction.link_tensions(thrusts, external)
+        """Return the tension of each link in the last step (N) (N), see :mod:`.link_force_kernels`.
 
-    def states(self) -> Array:
-        """Return the true states of payload and UAVs now, (N + 1, 13) as in :mod:`.state_kernels`, to be read only."""
-        return self._correction.states
-
-    def loads(self) -> Array:
-        """Return the loads on payload and UAVs that the next step lacks, (N + 1, 6) as in :mod:`.state_kernels`.
-
-        They hold while nothing but the links acts on a part by contact; to be used at once.
+        ``thrusts`` N numbers (N) and ``external`` N triples (N, NED; None: none) of that step.
         """
-        return self._correction.loads
+        forces = np.zeros((len(thrusts), 3)) if external is None else np.array(external, dtype=float)
+        tensions: Array = link_tensions(
+            self._now, self._before, self._parts, np.array(thrusts, dtype=float), forces, self._gravity,
+            self._physics_step,
+        )  # fmt: skip
+        return list(tensions.tolist())
 
     def set_payload_moments(self, moments: Sequence[float]) -> None:
         """Set the payload's principal moments of inertia (3,) (kg m2), from the next reading on."""
-        self._correction.set_payload_moments(moments)
+        self._parts[0, :3] = moments
+
+    def _evaluate(self) -> None:
+        self.states = np.empty((len(self._now), STATE_COLUMNS))
+        states_from_engine(
+            self._now, self._parts, self._payload_in_axes, self._physics_step, self._free_steps,
+            self._memory, self.states, self.loads,
+        )  # fmt: skip

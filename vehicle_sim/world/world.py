@@ -13,11 +13,9 @@ from gcs.config.tables import WorldConfig
 from idc_controller.arrays import Array
 from idc_controller.parameters import SystemParameters
 from idc_controller.rotations_float import Quaternion, Vector
-from vehicle_sim.world.accelerometers import clipped
-from vehicle_sim.world.contact_detection import ContactDetector
 from vehicle_sim.world.cradles import Cradles
 from vehicle_sim.world.errors import SimulationError
-from vehicle_sim.world.ground import NO_CONTACTS, Contacts, Ground
+from vehicle_sim.world.ground import NO_CONTACTS, ContactDetector, Contacts, Ground
 from vehicle_sim.world.multibody import check_supported, load_multibody
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
 from vehicle_sim.world.readings import Readings
@@ -125,7 +123,7 @@ class World:
         # The height of a UAV, which is at hand, says mostly that no cradle has anything to do.
         if self._cradles.number_held or self._readings.uavs[0][0][2] <= self._ground.standing_height + self._system.arm:
             self._update_cradles(thrusts)
-        (_, _, _, *torque), *loads = self._readings.loads().tolist()
+        (_, _, _, *torque), *loads = self._readings.loads.tolist()
         _apply_torque(body, -1, torque, _LINK_FRAME, client)
         for uav, thrust, (x, y, z), (f_x, f_y, f_z, t_x, t_y, t_z) in zip(uavs, thrusts, torques, loads, strict=True):
             _apply_force(body, uav, (f_x, f_y, thrust + f_z), _ORIGIN, _LINK_FRAME, client)
@@ -162,7 +160,7 @@ class World:
 
     def states(self) -> Array:
         """Return the true states of payload and UAVs after the last step, (N + 1, 13) as in :mod:`.state_kernels`."""
-        return self._readings.states()
+        return self._readings.states
 
     @property
     def thrusts(self) -> tuple[float, ...]:
@@ -211,7 +209,7 @@ class World:
         """
         if self.contacts() is NO_CONTACTS:
             return ()
-        return clipped(self._readings, self.parameters.g, self.physics_hz)
+        return self._readings.clipped()
 
     def touching_ground(self) -> bool:
         """Return True if the payload stands on pad or ground."""

@@ -1,4 +1,4 @@
-"""Compiled kernels of dead reckoning; see :mod:`idc_controller.estimation.health.dead_reckoning`."""
+"""Compiled kernels of dead reckoning; see :mod:`idc_controller.estimation.health.sensor_health`."""
 
 import numpy as np
 

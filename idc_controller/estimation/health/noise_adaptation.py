@@ -1,4 +1,4 @@
-"""Adaptation of measurement and process noise to the innovations.
+"""Innovation test of the measurements of one moment, and adaptation of measurement and process noise to it.
 
 Innovations normalised by their covariance have variance 1 and are uncorrelated in time. Where most are larger without
 correlation, the sensors are noisier than assumed; where they keep pointing the same way, forces change faster than
@@ -10,14 +10,48 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 
 from idc_controller.arrays import Array, Mask
-from idc_controller.estimation.health.innovation_gate import InnovationTest
+from idc_controller.estimation.kalman_filter import Innovation
+from idc_controller.estimation.measurement_model import ObservationStack
 from idc_controller.estimation.measurements import PAYLOAD, SensorKey
 from idc_controller.estimation.settings import NoiseAdaptationSettings
-from idc_controller.estimation.update_kernels import mean_products
+from idc_controller.estimation.update_kernels import gated, mean_products
+
+
+class InnovationTest(NamedTuple):
+    """Result for K measurements with m rows in all."""
+
+    variance: Array
+    """Measurement variance assumed now (m,)."""
+    normalised: Array
+    """Innovations normalised to variance 1 (m,)."""
+    mean_squares: Array
+    """Mean square of each measurement's normalised innovation (K,); on average 1."""
+    accepted: Mask
+    """Measurements that pass (K,)."""
+    accepted_rows: Mask
+    """Rows (m,) of accepted measurements, and of the channels that pass alone in rejected ones."""
+    ratios: Array
+    """Test ratios of pose and motion (K, 2): above 1 they are rejected; equal where one of them alone is tested."""
+
+    @classmethod
+    def of(cls, innovation: Innovation, stack: ObservationStack, noise_scale: float, gates: Array) -> InnovationTest:
+        """Return the test of the measurements of one moment.
+
+        Args:
+            innovation: theirs.
+            stack: the measurements.
+            noise_scale: of their variances.
+            gates: normalised innovation squared up to which a measurement passes, by its size (7,).
+        """
+        variance = stack.variance * noise_scale
+        return cls(
+            variance, *gated(innovation.residual, innovation.covariance, variance, stack.starts, stack.sizes, gates)
+        )
 
 
 class Reaction(Enum):

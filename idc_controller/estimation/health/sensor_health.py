@@ -1,27 +1,146 @@
 """Sensor health: which parts of a measurement the estimator may use."""
 
 import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from idc_controller.arrays import Mask
 from idc_controller.estimation.health.channel_isolation import ChannelIsolation
-from idc_controller.estimation.health.dead_reckoning import DeadReckoning
+from idc_controller.estimation.health.dead_reckoning_kernels import reckon
 from idc_controller.estimation.health.noise_adaptation import NoiseAdaptation
-from idc_controller.estimation.health.stuck_sensor import StuckSensors
 from idc_controller.estimation.kalman_filter import Innovation
 from idc_controller.estimation.measurement_model import ObservationStack
 from idc_controller.estimation.measurements import (
     PAYLOAD,
+    Attitude,
     Channel,
     Measurement,
     MeasurementNoise,
     Position,
+    SampleStack,
     SensorGroup,
     SensorKey,
 )
-from idc_controller.estimation.settings import EstimatorSettings
+from idc_controller.estimation.settings import DeadReckoningSettings, EstimatorSettings, StuckSensorSettings
+
+
+class DeadReckoning:
+    """Compares poses and motions of N UAVs and of the payload unit.
+
+    The innovation test goes by what most sources measure. Positions that are wrong for one common reason (a base
+    station that drifts, say) agree with each other and would bias the estimate. So would the payload's only unit, which
+    is right when it persists after a blow. Yet each of them contradicts its own motion, whatever the others measure.
+
+    Arrays are those of :func:`~idc_controller.estimation.health.dead_reckoning_kernels.reckon`.
+    """
+
+    def __init__(self, number_of_uavs: int, settings: DeadReckoningSettings = DeadReckoningSettings()) -> None:
+        self._number_of_uavs, self._settings = number_of_uavs, settings
+        sources = number_of_uavs + 2
+        self._recent = np.zeros((sources, settings.smoothed, 8))
+        self._motion, self._integral = np.zeros((sources, 3)), np.zeros((sources, 4))
+        self._differences = np.zeros((sources, 256, 4))
+        self._counts = np.zeros((sources, 5), dtype=int)
+        self._ratio = np.full(sources, np.nan)
+        self._groups: tuple[SensorGroup, ...] = ()
+
+    @property
+    def inconsistent_groups(self) -> tuple[SensorGroup, ...]:
+        """Groups whose poses contradict their motions.
+
+        Most vehicles' positions, while the payload unit's are consistent; or the other way round; or the payload
+        unit's attitude.
+        """
+        return self._groups
+
+    def add(self, samples: SampleStack) -> None:
+        """Take the poses of one moment with their motions."""
+        s = self._settings
+        longest, tests = reckon(
+            *samples, self._number_of_uavs, s.window, s.gap, s.samples, s.position_error, s.attitude_error, s.sigmas,
+            self._recent, self._motion, self._integral, self._differences, self._counts, self._ratio,
+        )  # fmt: skip
+        if 2 * longest >= self._differences.shape[1]:
+            self._differences = np.concatenate([self._differences, np.zeros_like(self._differences)], axis=1)
+        if tests:
+            self._groups = self._inconsistent()
+
+    def is_inconsistent(self, uav: int) -> bool:
+        """Return whether the position of a UAV contradicts its velocity."""
+        return bool(self._ratio[uav] > 1.0)
+
+    def _inconsistent(self) -> tuple[SensorGroup, ...]:
+        *ratios, position, _ = self._ratio.tolist()  # nan where nothing was measured
+        position_failed, attitude_failed = (self._counts[-2:, 4] >= self._settings.consecutive).tolist()
+        consistent, most = self._settings.consistent_ratio, self._number_of_uavs
+        found = []
+        if position <= consistent and 2 * sum(r > 1.0 for r in ratios) > most:
+            found.append(SensorGroup(False, Position))
+        if position_failed and 2 * sum(r <= consistent for r in ratios) > most:
+            found.append(SensorGroup(True, Position))
+        if attitude_failed:
+            found.append(SensorGroup(True, Attitude))
+        return tuple(found)
+
+
+@dataclass(slots=True)
+class _Last:
+    time: float
+    pose: list[float]
+    motion: list[float]
+    repeats: tuple[int, int] = (0, 0)
+    """Of the pose and of the motion."""
+    stuck: tuple[bool, bool] = (False, False)
+    """Whether the pose, and whether the motion, is stuck."""
+
+
+class StuckSensors:
+    """Counts repeated values of every channel that has noise."""
+
+    def __init__(self, noise: MeasurementNoise, settings: StuckSensorSettings = StuckSensorSettings()) -> None:
+        self._noise, self._settings = noise, settings
+        self._last: dict[SensorKey, _Last] = {}
+
+    def check(self, measurement: Measurement, pose: list[float], motion: list[float]) -> tuple[bool, bool]:
+        """Take a measurement, by its numbers, and return whether its pose, and whether its motion, is stuck."""
+        time, key = measurement.time, (measurement.source, type(measurement))
+        last = self._last.get(key)
+        if last is None:
+            self._last[key] = _Last(time, pose, motion)
+            return False, False
+        if time <= last.time + (self._settings.relay_interval if measurement.source == PAYLOAD else 0.0):
+            return last.stuck
+        same_pose, same_motion = pose == last.pose, motion == last.motion
+        if same_pose or same_motion:
+            of_pose, of_motion = last.repeats
+            last.repeats = of_pose + 1 if same_pose else 0, of_motion + 1 if same_motion else 0
+            last.stuck = self._stuck_parts(key, last.repeats)
+        else:
+            last.repeats, last.stuck = (0, 0), (False, False)
+        last.time, last.pose, last.motion = time, pose, motion
+        return last.stuck
+
+    def channels(self) -> list[Channel]:
+        """Return the channels that are stuck now."""
+        return [
+            Channel(source, kind, part)
+            for (source, kind), last in self._last.items()
+            if True in last.stuck
+            for part, stuck in enumerate(last.stuck)
+            if stuck
+        ]
+
+    def _stuck_parts(self, key: SensorKey, repeats: tuple[int, int]) -> tuple[bool, bool]:
+        limit, (pose, motion), (pose_sigma, motion_sigma) = self._settings.repeats, repeats, self._sigmas(*key)
+        return pose >= limit and pose_sigma > 0.0, motion >= limit and motion_sigma > 0.0
+
+    def _sigmas(self, source: int, kind: type) -> tuple[float, float]:
+        noise, of_payload = self._noise, source == PAYLOAD
+        if kind is Attitude:
+            return noise.attitude, noise.payload_rates if of_payload else noise.uav_rates
+        return noise.position, noise.payload_velocity if of_payload else noise.uav_velocity
 
 
 class HealthSnapshot(NamedTuple):
