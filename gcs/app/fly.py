@@ -48,7 +48,7 @@ from gcs.record.summary import summarise, within_limits
 from gcs.record.tables import TRUTH
 from gcs.record.verdict import GroundReport, verdict
 from idc_controller.guidance.progress import Guidance
-from idc_controller.paper.printed_filter import PrintedFilter
+from idc_controller.paper.avoidance import PrintedFilter
 from idc_controller.safety.filter_protocol import NoObstacles, SafetyFilter
 
 

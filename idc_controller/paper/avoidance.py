@@ -15,15 +15,21 @@ ones at the state (:func:`nonlinear_acceleration`), where a tilted link lets thr
 
 from dataclasses import dataclass
 
+import coal
 import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.errors import SolverError
+from idc_controller.estimation.estimate import Estimate
+from idc_controller.geometry.formation import Formation
+from idc_controller.geometry.obstacles import ObstacleSource, PredictedObstacle
+from idc_controller.model.linear import LinearModel
 from idc_controller.paper.plant import Plant, PlantState
 from idc_controller.paper.state_space import minimal
 from idc_controller.parameters import SystemParameters
 from idc_controller.qp.daqp_solver import DaqpSolver
 from idc_controller.qp.problem import QuadraticProgram
+from idc_controller.safety.filter_protocol import NoObstacles
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,3 +102,79 @@ def corrected_input(delta_u: Array, rows: Array, bounds: Array, lower: Array, up
             continue
         return Correction(np.clip(x, lower, upper), True, soft is not None)
     return Correction(delta_u, False, True)
+
+
+THRUST_MIN = 1.0
+"""N, of a UAV's set-point."""
+DIFFERENCE = 0.05
+"""s, for the obstacles' velocity and acceleration from their prediction."""
+
+
+class PrintedFilter(NoObstacles):
+    """Corrects the set-points of the tracker by eq:obsAvoid as printed; the trajectory stays the mission's.
+
+    The payload is taken for a double integrator and the hull for a body that translates with it. Both are false: thrust
+    reaches the payload's lateral acceleration only through the links' tilt, so for a pole A_obs is zero and the filter
+    cannot act. It is kept to show what that means; the default is
+    :class:`~idc_controller.safety.safety_filter.AvoidanceFilter`.
+    """
+
+    def __init__(
+        self,
+        model: LinearModel,
+        obstacles: ObstacleSource,
+        margin: float,
+        poles: tuple[float, float] = (2.0, 2.0),
+    ) -> None:
+        """``margin`` (m) is added to the obstacles; ``poles`` (1/s) are those of the barrier, real and positive."""
+        self.model, self.obstacles, self.margin = model, obstacles, margin
+        self.formation = Formation(model.parameters)
+        self._poles = poles
+        self.infeasible = 0
+        """Steps in which the rows could not be kept."""
+
+    def correct(self, time: float, u: Array, estimate: Estimate) -> Array:
+        """``u`` (3 N,) with the thrusts nearest to the tracker's that keep A_obs u <= b_obs."""
+        obstacles = self.obstacles.predict(np.array([time, time + DIFFERENCE, time + 2.0 * DIFFERENCE]))
+        if not obstacles:
+            return u
+        layout, parameters = self.model.layout, self.model.parameters
+        A = self.model.A[layout.v_0]
+        deviation = estimate.x.copy()
+        deviation[layout.f] -= parameters.hover_thrust
+        drift = A @ deviation - A[:, layout.f] @ deviation[layout.f]
+        rows, bounds = zip(*(self.row(o, estimate, drift, A[:, layout.f]) for o in obstacles), strict=True)
+        N = parameters.number_of_uavs
+        f = u[layout.f_setpoint]
+        lower, upper = np.full(N, THRUST_MIN), np.full(N, 0.95 * parameters.thrust_max)
+        soft = np.ones(len(rows), dtype=bool)
+        problem = QuadraticProgram(np.eye(N), -f, np.array(rows), np.array(bounds), lower, upper, soft)
+        try:
+            x = DaqpSolver().solve(problem).x
+        except SolverError:
+            self.infeasible += 1
+            return u
+        corrected = u.copy()
+        corrected[layout.f_setpoint] = np.clip(x, lower, upper)
+        return corrected
+
+    def row(self, obstacle: PredictedObstacle, estimate: Estimate, drift: Array, B: Array) -> tuple[Array, float]:
+        """A_obs (N,) and b_obs of one obstacle: h'' >= -K (h, h') solved for the thrusts."""
+        layout, hover = self.model.layout, self.model.parameters.hover_thrust
+        position, velocity = estimate.x[layout.r_0], estimate.x[layout.v_0]
+        now, soon, later = obstacle.positions
+        shape = obstacle.shape
+        result = coal.DistanceResult()
+        coal.distance(
+            self.formation.hull(self.formation.hull_points(np.zeros((1, 3)))[0]), coal.Transform3s.Identity(),
+            shape.geometry(), coal.Transform3s(shape.rotation, now - position), coal.DistanceRequest(), result,
+        )  # fmt: skip
+        closest = position + np.array(result.getNearestPoint1())
+        is_round = shape.round_axes is not None
+        centre = now if is_round else position + np.array(result.getNearestPoint2())
+        mask = np.array(shape.round_axes) if is_round else np.ones(3)
+        encounter = Encounter(
+            closest, velocity, centre, (soon - now) / DIFFERENCE, (later - 2.0 * soon + now) / DIFFERENCE**2,
+            (shape.columns.radius if is_round else 0.0) + self.margin, mask,
+        )  # fmt: skip
+        return obstacle_row(encounter, drift - B @ hover, B, self._poles)

@@ -34,11 +34,6 @@ class QuadraticProgram:
     lazy: NDArray[np.bool_] | None = None
     """Rows of G that seldom bind (m,): a solver may leave out those that its minimiser keeps anyway; None: no row."""
 
-    @property
-    def is_bounded(self) -> bool:
-        """Return True if variables have bounds of their own."""
-        return self.lower is not None or self.upper is not None
-
 
 class QpSolution(NamedTuple):
     """A minimiser (n,) and the solver's iterations (0: no constraint is active)."""
@@ -48,7 +43,7 @@ class QpSolution(NamedTuple):
 
 
 class QpSolver(Protocol):
-    """A solver; it may keep what helps it with the next program."""
+    """A solver; it may keep what helps it with the next program, and be made for programs of few kinds only."""
 
     def solve(self, problem: QuadraticProgram) -> QpSolution:
         """Return the minimiser of ``problem``.

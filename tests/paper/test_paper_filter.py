@@ -7,7 +7,7 @@ from avoidance_scene import Scene, estimate_at, pole, sphere, swinging, wall
 from paper_system import system
 
 from idc_controller.model.linear import LinearModel
-from idc_controller.paper.printed_filter import PrintedFilter
+from idc_controller.paper.avoidance import PrintedFilter
 
 
 @pytest.fixture(scope="module")
