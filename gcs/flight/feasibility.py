@@ -143,10 +143,8 @@ class _Surroundings:
         highest = max(-start[2], -goal[2]) + settings.climb
         lowest = min(moving.below + settings.ground_clearance, -start[2], -goal[2])
         for formation, keep in tried:
-            detour = find_detour(
-                bodies, start, goal, formation, keep, lowest=lowest, highest=highest, area=self._mission.area,
-                settings=system.guidance.detour,
-            )  # fmt: skip
+            space = FreeSpace(bodies, formation, keep, lowest, highest, area=self._mission.area)
+            detour = find_detour(space, start, goal, settings=system.guidance.detour)
             if detour.waypoints is not None:
                 return detour.length
         return math.inf

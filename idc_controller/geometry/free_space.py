@@ -171,7 +171,8 @@ class FreeSpace:
         self.growth = np.zeros(len(obstacles)) if growth is None else np.array(growth, dtype=float)
         if self.growth.shape != (len(obstacles),) or not np.isfinite(self.centres).all():
             raise TrajectoryError("every obstacle needs a finite centre and one growth")
-        self._bodies = _Bodies.of([shape for shape, _ in obstacles])
+        self.shapes = tuple(shape for shape, _ in obstacles)
+        self._bodies = _Bodies.of(self.shapes)
         self.lateral_reach = np.array([shape.horizontal_reach for shape, _ in obstacles]) + self.growth
         """Extent of each obstacle from its centre outwards (M,) (m)."""
         self.vertical_reach = self._bodies.half_height + self.growth

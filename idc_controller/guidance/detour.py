@@ -17,8 +17,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.free_space import BoundingCylinder, FlightArea, FreeSpace
-from idc_controller.geometry.shape import Shape
+from idc_controller.geometry.free_space import FreeSpace
 from idc_controller.guidance.settings import DetourSettings
 from idc_controller.guidance.straighten import free_segments_from, straightened
 from idc_controller.trajectory.trajectory import point
@@ -50,44 +49,32 @@ class Detour:
 
 
 def find_detour(
-    obstacles: Sequence[tuple[Shape, ArrayLike]],
+    space: FreeSpace,
     start: ArrayLike,
     goal: ArrayLike,
-    formation: BoundingCylinder,
-    margin: float,
     *,
-    lowest: float = 0.5,
-    highest: float = 15.0,
-    growth: ArrayLike | None = None,
-    area: FlightArea | None = None,
     names: Sequence[str] | None = None,
     settings: DetourSettings = DetourSettings(),
 ) -> Detour:
-    """Return the shortest path for the formation from ``start`` to ``goal`` (3,), NED (m).
+    """Return the shortest path for the formation in free ``space`` from ``start`` to ``goal`` (3,), NED (m).
 
     The straight line if it is free; otherwise over, under, left or right of the obstacles on it. Straight lines
-    between the waypoints keep ``margin`` (m); whoever flies round their corners adds what is cut off there. A
+    between the waypoints keep the margin; whoever flies round their corners adds what is cut off there. A
     start nearer to an obstacle than that is left on a path that does not come nearer. Deterministic.
 
-    Args:
-        obstacles, growth: (shape, centre (3,)) and by how much each is taken larger (m); moving ones as they
-            are, or will be, at one moment.
-        lowest, highest: altitudes of the payload's centre (m, up).
-        area: that must not be left, its edges among the obstacles; None: everywhere.
-        names: the obstacles' names, for the reason.
+    ``names``: the obstacles', for the reason; None: by their kinds.
 
     Raises:
         TrajectoryError: what is given has no meaning.
     """
     begin, end = point(start, "start"), point(goal, "goal")
-    space = FreeSpace(obstacles, formation, margin, lowest, highest, growth, area)
-    called = list(names) if names is not None else [f"{s.kind} {i}" for i, (s, _) in enumerate(obstacles, start=1)]
+    called = names_of(space, names)
     if (reason := _refused(space, end, "goal", called)) is not None:
         return Detour(None, reason)
     if free_segments_from(space, begin, end[None])[0]:
         return Detour(np.array([begin, end]))
     boxes = [search_region(space, begin, end, settings)]
-    if area is not None:
+    if space.area is not None:
         whole = whole_region(space, begin, end, settings)
         boxes += [whole] if not np.array_equal(whole, boxes[0]) else []
     spacing, fine = settings.spacing, settings.fine_spacing
@@ -102,6 +89,11 @@ def find_detour(
     if not space.is_free(begin[None])[0]:
         reason = (_refused(space, begin, "start", called) or reason) + ", and no path leads out of there"
     return Detour(None, reason)
+
+
+def names_of(space: FreeSpace, names: Sequence[str] | None) -> list[str]:
+    """Return the ``names`` of the obstacles, if there are none by their kinds."""
+    return list(names) if names is not None else [f"{shape.kind} {i}" for i, shape in enumerate(space.shapes, start=1)]
 
 
 def _refused(space: FreeSpace, place: Array, what: str, names: Sequence[str]) -> str | None:

@@ -19,9 +19,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.free_space import BoundingCylinder, FlightArea, FreeSpace
-from idc_controller.geometry.shape import Shape
-from idc_controller.guidance.detour import whole_region
+from idc_controller.geometry.free_space import FreeSpace
+from idc_controller.guidance.detour import names_of, whole_region
 from idc_controller.guidance.settings import DetourSettings
 
 WIDEST = 2.0
@@ -60,70 +59,50 @@ class Gap:
 
 
 def narrowest_gap(
-    obstacles: Sequence[tuple[Shape, ArrayLike]],
+    space: FreeSpace,
     start: ArrayLike,
     goal: ArrayLike,
-    formation: BoundingCylinder,
-    margin: float,
     *,
-    lowest: float,
-    highest: float,
-    growth: ArrayLike | None = None,
-    area: FlightArea | None = None,
     names: Sequence[str] | None = None,
     settings: DetourSettings = DetourSettings(),
 ) -> Gap | None:
-    """Return the narrowest gap of the widest path from ``start`` to ``goal`` (3,), NED (m).
+    """Return the narrowest gap of the widest path in a ``space`` from ``start`` to ``goal`` (3,), NED (m).
 
-    None: all gaps of a path leave the formation ``WIDEST`` m. Paths lead past the bodies, over them with ``margin`` (m)
-    to spare, or under them.
+    None: all gaps of a path leave the formation ``WIDEST`` m. Paths lead past the bodies, over them with the margin to
+    spare, or under them.
 
-    Args:
-        obstacles, growth: (shape, centre (3,)) and by how much each is taken larger (m).
-        lowest, highest: altitudes of the payload's centre (m, up).
-        area: that must not be left, its edges among the obstacles; None: everywhere.
-        names: the obstacles' names, for the gap.
-        settings: of the search for detours, whose region bounds the paths.
+    ``names``: the obstacles', for the gap; None: by their kinds. ``settings`` of the search for detours, whose region
+    bounds the paths.
     """
     begin, end = np.asarray(start, dtype=float), np.asarray(goal, dtype=float)
-    space = FreeSpace(obstacles, formation, margin, lowest, highest, area=area)
-    bodies = _Bodies(obstacles, growth, space, begin, end, settings)
+    bodies = _Bodies(space, begin, end, settings)
     if bodies.joins(WIDEST):
         return None
-    low, high = -formation.radius + 1e-3, WIDEST
+    low, high = -space.formation.radius + 1e-3, WIDEST
     closed = not bodies.joins(low)
     while not closed and high - low > _PRECISION:
         middle = (low + high) / 2.0
         low, high = (middle, high) if bodies.joins(middle) else (low, middle)
-    called = list(names) if names is not None else [f"{s.kind} {i}" for i, (s, _) in enumerate(obstacles, start=1)]
+    called = names_of(space, names)
     return bodies.gap(low if closed else high, called, closed)
 
 
 class _Bodies:
     """Obstacles in plan view, and the layers in which the formation meets them."""
 
-    def __init__(
-        self,
-        obstacles: Sequence[tuple[Shape, ArrayLike]],
-        growth: ArrayLike | None,
-        space: FreeSpace,
-        start: Array,
-        goal: Array,
-        settings: DetourSettings,
-    ) -> None:
+    def __init__(self, space: FreeSpace, start: Array, goal: Array, settings: DetourSettings) -> None:
         self._formation, self._margin, self._start, self._goal = space.formation, space.margin, start, goal
         self._lowest, self._highest = space.lowest, space.highest
         centres = space.centres
-        more = np.zeros(len(centres)) if growth is None else np.array(growth, dtype=float)
-        views = [shape.plan_view for shape, _ in obstacles]
+        views = [shape.plan_view for shape in space.shapes]
         self._cores = np.array(
             [shapely.affinity.translate(v.core, x, y) for v, (x, y, _) in zip(views, centres.tolist(), strict=True)],
             dtype=object,
         )
-        self._radii = np.array([view.radius for view in views], dtype=float) + more
-        half = np.array([shape.half_height for shape, _ in obstacles], dtype=float) + more
+        self._radii = np.array([view.radius for view in views], dtype=float) + space.growth
+        half = np.array([shape.half_height for shape in space.shapes], dtype=float) + space.growth
         self._top, self._bottom = half - centres[:, 2], -half - centres[:, 2]
-        self._is_round = np.array([shape.round_axes == (1.0, 1.0, 1.0) for shape, _ in obstacles], dtype=bool)
+        self._is_round = np.array([shape.round_axes == (1.0, 1.0, 1.0) for shape in space.shapes], dtype=bool)
         low, high = whole_region(space, start, goal, settings)
         self._region = shapely.box(*low[:2], *high[:2])
         if space.area is not None:

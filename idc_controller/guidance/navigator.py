@@ -244,10 +244,7 @@ class Navigator:
             away = np.linalg.norm(path[goals[0] : goals[-1] + 1] - passed[0], axis=1)
             goals = [goals[0] + int(np.argmin(away)), *goals]
         for goal in goals:
-            detour = find_detour(
-                bodies, position, path[goal], formation, keep, lowest=self.lowest, highest=highest,
-                growth=growth, area=self._area, names=names, settings=s.detour,
-            )  # fmt: skip
+            detour = find_detour(space, position, path[goal], names=names, settings=s.detour)
             if detour.waypoints is not None:
                 return detour.waypoints, float(ahead[goal])
         # By its surface: a long wall's centre may be far.
@@ -269,10 +266,8 @@ class Navigator:
         covers = [(o.shape, o.positions[0]) for o in obstacles]
         estimates = [o.estimate() if o.estimate else cover for o, cover in zip(obstacles, covers, strict=True)]
         for bodies, growth in ((estimates, None), (covers, [float(o.growth[0]) for o in obstacles])):
-            gap = narrowest_gap(
-                bodies, position, goal, self.formation, keep, lowest=self.lowest, highest=highest, growth=growth,
-                area=self._area, names=[o.name for o in obstacles], settings=self.settings.detour,
-            )  # fmt: skip
+            space = FreeSpace(bodies, self.formation, keep, self.lowest, highest, growth, self._area)
+            gap = narrowest_gap(space, position, goal, names=[o.name for o in obstacles], settings=self.settings.detour)
             # Where estimates leave a way, what they do not know closes it.
             if gap is not None and (gap.clearance < keep or growth is not None):
                 needed = gap.width + 2.0 * (keep - gap.clearance)

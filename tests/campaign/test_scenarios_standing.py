@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import shapely
+from detours import detour_among
 
 from gcs.campaign.flight import FlightPlan
 from gcs.campaign.result import Flown
@@ -25,7 +26,6 @@ from gcs.planning.flight import PlanningFlight
 from gcs.planning.schedule import Schedule
 from idc_controller.geometry.free_space import FreeSpace
 from idc_controller.geometry.shapes import Pole, Sphere, Wall
-from idc_controller.guidance.detour import find_detour
 from idc_controller.guidance.narrowest_gap import Gap
 
 KINDS = ("boxes", "forest", "rooms", "overhang")
@@ -93,7 +93,7 @@ def test_generated_course_has_a_way_or_none_as_it_says(course):
     places = places_of(mission)
     highest = max(-p[2] for p in places) + SYSTEM.guidance.navigator.climb
     detours = [
-        find_detour(bodies, a, b, PASSAGES.formation, 0.7, lowest=0.35, highest=highest).waypoints
+        detour_among(bodies, a, b, PASSAGES.formation, 0.7, lowest=0.35, highest=highest).waypoints
         for a, b in pairwise(places)
     ]
     assert all(detour is not None for detour in detours) == (passage.verdict == "passable")

@@ -6,11 +6,11 @@ from itertools import pairwise
 import coal
 import numpy as np
 import pytest
+from detours import detour_among
 
 from idc_controller.errors import TrajectoryError
 from idc_controller.geometry.free_space import BoundingCylinder, FreeSpace
 from idc_controller.geometry.shapes import Pole, Sphere, Wall
-from idc_controller.guidance.detour import find_detour
 from idc_controller.guidance.settings import DetourSettings
 from idc_controller.guidance.straighten import straightened
 
@@ -33,7 +33,7 @@ def sphere(*position, radius=0.5):
 
 
 def detour_of(obstacles, start=START, goal=GOAL, margin=MARGIN, highest=12.0, **others):
-    detour = find_detour(obstacles, start, goal, FORMATION, margin, highest=highest, **others)
+    detour = detour_among(obstacles, start, goal, FORMATION, margin, highest=highest, **others)
     if detour.waypoints is not None:
         assert detour.reason == ""
         np.testing.assert_allclose(detour.waypoints[[0, -1]], [start, goal])
@@ -134,7 +134,7 @@ def test_goal_in_closed_box_is_unreachable():
     ],
 )
 def test_goal_inside_obstacle_is_unreachable(obstacle, others, reason):
-    detour = find_detour([obstacle], **({"start": START, "goal": GOAL, "formation": FORMATION, "margin": MARGIN,
+    detour = detour_among([obstacle], **({"start": START, "goal": GOAL, "formation": FORMATION, "margin": MARGIN,
                                           "highest": 12.0, "names": ["the ball"]} | others))  # fmt: skip
     assert detour.waypoints is None
     assert reason in detour.reason
@@ -158,7 +158,7 @@ def test_detour_keeps_altitude_limits():
 
 def test_distance_does_not_decrease_from_start_within_margin():
     ball = sphere(1.9, 0.0, -5.0)
-    detour = find_detour([ball], START, GOAL, FORMATION, MARGIN, highest=12.0)
+    detour = detour_among([ball], START, GOAL, FORMATION, MARGIN, highest=12.0)
     assert detour.waypoints is not None
     space = FreeSpace([ball], FORMATION, MARGIN, 0.5, 12.0)
     at_start = space.clearance(np.array([START]))[0, 0]
@@ -170,8 +170,8 @@ def test_distance_does_not_decrease_from_start_within_margin():
 
 def test_moving_obstacle_is_grown_by_its_uncertainty():
     ball = sphere(10.0, 2.0, -5.0)
-    assert len(find_detour([ball], START, GOAL, FORMATION, 0.3).waypoints) == 2
-    grown = find_detour([ball], START, GOAL, FORMATION, 0.3, growth=[0.5])
+    assert len(detour_among([ball], START, GOAL, FORMATION, 0.3).waypoints) == 2
+    grown = detour_among([ball], START, GOAL, FORMATION, 0.3, growth=[0.5])
     assert clearance_by_coal([ball], grown.waypoints) >= 0.8 - 2e-3
 
 
@@ -279,7 +279,7 @@ def test_detour_leads_through_gap_that_only_the_narrow_side_fits():
     walls = [(Wall((8.0, 20.0, 40.0)), np.array([8.0, side * (10.0 + 1.3), -5.0])) for side in (-1.0, 1.0)]
     slim = BoundingCylinder(1.1, 3.75, 0.25, (0.6, 0.3), 0.4)
     for formation, is_straight in ((slim, True), (BoundingCylinder(1.1, 3.75, 0.25), False)):
-        detour = find_detour(walls, (0.0, 0.0, -5.0), (16.0, 0.0, -5.0), formation, 0.5)
+        detour = detour_among(walls, (0.0, 0.0, -5.0), (16.0, 0.0, -5.0), formation, 0.5)
         assert (detour.length == 16.0) == is_straight
 
 

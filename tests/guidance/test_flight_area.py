@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import shapely
 from avoidance_scene import avoidance, fly
+from detours import detour_among, gap_among
 from mission_files import RETURN, TAKE_OFF, A, plan, polygon, read, refusal, row
 from paper_system import system
 from standing_obstacles import StandingObstacles
@@ -18,8 +19,6 @@ from gcs.config import read_system
 from gcs.mission.fence import Exclusion, boundary_of, boundary_walls, excluded_polygon
 from gcs.record.run_data import RunData
 from idc_controller.geometry.free_space import BoundingCylinder, FlightArea
-from idc_controller.guidance.detour import find_detour
-from idc_controller.guidance.narrowest_gap import narrowest_gap
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.resting_place import RestingPlace
 from idc_controller.guidance.settings import NavigatorSettings
@@ -170,10 +169,10 @@ def test_gap_outside_the_area_is_none():
     bodies, names = [(shape, place) for _, shape, place in obstacles], [name for name, _, _ in obstacles]
     start, goal = np.array([0.0, 0.0, -5.0]), np.array([0.0, 20.0, -5.0])
     altitudes = {"lowest": 0.5, "highest": 12.0}
-    assert find_detour(bodies, start, goal, FORMATION, MARGIN, area=area, **altitudes).waypoints is None
-    gap = narrowest_gap(bodies, start, goal, FORMATION, MARGIN, area=area, names=names, **altitudes)
+    assert detour_among(bodies, start, goal, FORMATION, MARGIN, area=area, **altitudes).waypoints is None
+    gap = gap_among(bodies, start, goal, FORMATION, MARGIN, area=area, names=names, **altitudes)
     assert gap is not None and gap.width == 0.0 and gap.names[0].startswith("the fence")
-    outside = find_detour(bodies, start, [0.0, 14.5, -5.0], FORMATION, 0.0, area=area, **altitudes)
+    outside = detour_among(bodies, start, [0.0, 14.5, -5.0], FORMATION, 0.0, area=area, **altitudes)
     assert "outside the fence" in outside.reason
 
 

@@ -4,12 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from detours import gap_among
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from idc_controller.geometry.free_space import BoundingCylinder, FreeSpace
 from idc_controller.geometry.shapes import Box, Pole, Sphere, Wall
-from idc_controller.guidance.narrowest_gap import WIDEST, narrowest_gap
+from idc_controller.guidance.narrowest_gap import WIDEST
 
 FORMATION = BoundingCylinder(1.3, 3.5, 0.25)
 MARGIN, LOWEST, HIGHEST = 0.7, 0.35, 13.0
@@ -18,7 +19,7 @@ TALL = 18.0
 
 
 def gap_of(obstacles, start=START, goal=GOAL, **more):
-    return narrowest_gap(obstacles, start, goal, FORMATION, MARGIN, lowest=LOWEST, highest=HIGHEST, **more)
+    return gap_among(obstacles, start, goal, FORMATION, MARGIN, lowest=LOWEST, highest=HIGHEST, **more)
 
 
 def wall(x, y, size, bottom=0.0, yaw=0.0):

@@ -241,8 +241,9 @@ class Draft:
         """Return whether there is a detour round static obstacles, past every place between two of them."""
         between = [(a + b) / 2.0 for a, b in pairwise(sorted(set(self._static)))]
         places = [self._path[0], *(self._place(along, 0.0)[0] for along in between), self._path[-1]]
+        space = FreeSpace(static, formation, MARGIN, 2.0, CEILING)
         for begin, end in pairwise(places):
-            detour = find_detour(static, begin, end, formation, MARGIN, lowest=2.0, highest=CEILING)
+            detour = find_detour(space, begin, end)
             if detour.waypoints is None or detour.length > 2.0 * float(np.linalg.norm(end - begin)) + 8.0:
                 return False
         return True

@@ -12,7 +12,7 @@ from gcs.mission.fence import boundary_walls
 from gcs.mission.model import Mission, Obstacle
 from gcs.mission.route import FlyTo, Land, Route, TakeOff
 from idc_controller.geometry.formation import Formation
-from idc_controller.geometry.free_space import BoundingCylinder, FlightArea
+from idc_controller.geometry.free_space import BoundingCylinder, FlightArea, FreeSpace
 from idc_controller.guidance.detour import find_detour
 from idc_controller.guidance.narrowest_gap import Gap, narrowest_gap
 
@@ -62,12 +62,10 @@ class Passages:
         bodies = [(o.shape, o.position) for o in obstacles if o.motion is None]
         names = [o.name for o in obstacles if o.motion is None]
         highest = max(-down for _, _, down in places) + self._climb
+        space = FreeSpace(bodies, self.formation, self._keep, self._lowest, highest, area=area)
         narrowest: Gap | None = None
         for begin, end in pairwise(places):
-            gap = narrowest_gap(
-                bodies, begin, end, self.formation, self._keep, lowest=self._lowest, highest=highest, area=area,
-                names=names, settings=self._system.guidance.detour,
-            )  # fmt: skip
+            gap = narrowest_gap(space, begin, end, names=names, settings=self._system.guidance.detour)
             if gap is not None and (narrowest is None or gap.clearance < narrowest.clearance):
                 narrowest = gap
         return Passage(self._verdict(narrowest), narrowest)
@@ -76,14 +74,11 @@ class Passages:
         """Return whether the search for detours finds a way, or none, as ``passage`` says."""
         bodies = [(o.shape, np.array(o.position)) for o in obstacles if o.motion is None]
         highest = max(-down for _, _, down in places) + self._climb
+        space = FreeSpace(bodies, self.formation, self._keep, self._lowest, highest)
         found = all(
-            find_detour(
-                bodies, begin, end, self.formation, self._keep, lowest=self._lowest, highest=highest,
-                settings=self._system.guidance.detour,
-            ).waypoints
-            is not None
+            find_detour(space, begin, end, settings=self._system.guidance.detour).waypoints is not None
             for begin, end in pairwise(places)
-        )  # fmt: skip
+        )
         return found == (passage.verdict == "passable")
 
     def _verdict(self, gap: Gap | None) -> Verdict:
