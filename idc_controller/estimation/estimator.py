@@ -26,7 +26,6 @@ from idc_controller.estimation.measurements import (
     MeasurementNoise,
     Position,
     SensorGroup,
-    SensorKey,
 )
 from idc_controller.estimation.process_model import ProcessModel
 from idc_controller.estimation.propagation import ErrorStateFilter, Outlook, PropagationInterval
@@ -35,46 +34,6 @@ from idc_controller.estimation.settings import EstimatorSettings
 from idc_controller.model.linear import LinearModel
 from idc_controller.rotations import quaternion_from_euler
 from idc_controller.trajectory.flatness import Reference
-
-
-class MeasurementHistory:
-    """Moments, the earliest first. Times in s."""
-
-    def __init__(self, simultaneous: float) -> None:
-        """``simultaneous``: measurements closer than this (s) are of one moment."""
-        self._simultaneous = simultaneous
-        self._times: list[float] = []
-        self._moments: list[Moment] = []
-
-    def add(self, measurement: Measurement, applied: float) -> float | None:
-        """Add one; return the time of its moment, or None if it adds nothing to what was ``applied`` until then (s)."""
-        time, times = measurement.time, self._times
-        at = bisect.bisect_left(times, time - self._simultaneous)
-        if at == len(times) or times[at] > time + self._simultaneous:
-            times.insert(at, time)
-            self._moments.insert(at, Moment(time, {}))
-        moment, key = self._moments[at], (measurement.source, type(measurement))
-        copies = moment.measurements.get(key)
-        if copies is None:
-            moment.measurements[key] = [measurement]
-        elif measurement.source == PAYLOAD and moment.time <= applied:
-            return None  # another vehicle's relay of what was applied already
-        else:
-            copies.append(measurement)
-        return moment.time
-
-    def after(self, time: float) -> list[Moment]:
-        """Return the moments after ``time`` (s)."""
-        return self._moments[bisect.bisect_right(self._times, time) :]
-
-    def has(self, key: SensorKey, since: float) -> bool:
-        """Return whether there is a measurement of a source and kind after ``since`` (s)."""
-        return any(key in moment.measurements for moment in self.after(since))
-
-    def forget(self, until: float) -> None:
-        """Discard all moments until that time (s)."""
-        old = bisect.bisect_right(self._times, until)
-        del self._times[:old], self._moments[:old]
 
 
 class Snapshot(NamedTuple):
@@ -89,18 +48,18 @@ class Snapshot(NamedTuple):
 
 
 class ReplayBuffer:
-    """Measurements and snapshots of the last ``duration`` (s)."""
+    """Measurements of the last ``duration`` (s), in moments, and snapshots of the filter between them. Times in s."""
 
     def __init__(self, duration: float, simultaneous: float) -> None:
         """``simultaneous``: measurements closer than this (s) are of one moment."""
         self._duration, self._simultaneous = duration, simultaneous
-        self.measurements = MeasurementHistory(simultaneous)
+        self._times: list[float] = []
+        self._moments: list[Moment] = []
         self.snapshots: list[Snapshot] = []
 
     def start(self, first: Snapshot) -> None:
         """Discard all and begin with a snapshot."""
-        self.measurements = MeasurementHistory(self._simultaneous)
-        self.snapshots = [first]
+        self._times, self._moments, self.snapshots = [], [], [first]
 
     @property
     def time(self) -> float:
@@ -109,22 +68,38 @@ class ReplayBuffer:
 
     def add(self, measurement: Measurement) -> bool:
         """Add a measurement and return to before it; returns False for one that is too old."""
-        applied = self.snapshots[-1].time
-        if measurement.time <= self.snapshots[0].time or measurement.time <= applied - self._duration:
+        if measurement.time <= self.snapshots[0].time or measurement.time <= self.time - self._duration:
             return False
-        moment = self.measurements.add(measurement, applied)
-        if moment is not None and moment <= applied:
+        moment = self.insert(measurement)
+        if moment is not None and moment <= self.time:
             self.rewind(moment)
         return True
+
+    def insert(self, measurement: Measurement) -> float | None:
+        """Add a measurement; return the time of its moment, or None if it adds nothing to what was applied."""
+        time, times = measurement.time, self._times
+        at = bisect.bisect_left(times, time - self._simultaneous)
+        if at == len(times) or times[at] > time + self._simultaneous:
+            times.insert(at, time)
+            self._moments.insert(at, Moment(time, {}))
+        moment, key = self._moments[at], (measurement.source, type(measurement))
+        copies = moment.measurements.get(key)
+        if copies is None:
+            moment.measurements[key] = [measurement]
+        elif measurement.source == PAYLOAD and moment.time <= self.time:
+            return None  # another vehicle's relay of what was applied already
+        else:
+            copies.append(measurement)
+        return moment.time
 
     def rewind(self, time: float) -> None:
         """Return to before ``time`` (s), as far as there are snapshots."""
         while len(self.snapshots) > 1 and self.snapshots[-1].time >= time:
             self.snapshots.pop()
 
-    def pending(self) -> list[Moment]:
-        """Return the moments that are not applied yet."""
-        return self.measurements.after(self.time)
+    def after(self, time: float) -> list[Moment]:
+        """Return the moments after ``time`` (s)."""
+        return self._moments[bisect.bisect_right(self._times, time) :]
 
     def forget(self) -> float:
         """Discard what is older than the duration; return the oldest time that is left (s)."""
@@ -132,7 +107,8 @@ class ReplayBuffer:
         keep = max(bisect.bisect_right(self.snapshots, horizon, key=attrgetter("time")) - 1, 0)
         del self.snapshots[:keep]
         oldest = self.snapshots[0].time
-        self.measurements.forget(oldest)
+        old = bisect.bisect_right(self._times, oldest)
+        del self._times[:old], self._moments[:old]
         return oldest
 
 
@@ -199,13 +175,13 @@ class Estimator:
             position: NED (3,) (m).
             yaw: rad.
         """
-        measurements = self._replay.measurements
-        if measurements.has((PAYLOAD, Position), since=time - self.settings.payload_timeout):
+        since = time - self.settings.payload_timeout
+        if any((PAYLOAD, Position) in moment.measurements for moment in self._replay.after(since)):
             return
         zero, level = np.zeros(3), quaternion_from_euler(0.0, 0.0, yaw)
         self._replay.rewind(time)
-        measurements.add(Position(time, PAYLOAD, position, zero), self.time)
-        measurements.add(Attitude(time, PAYLOAD, level, zero), self.time)
+        self._replay.insert(Position(time, PAYLOAD, position, zero))
+        self._replay.insert(Attitude(time, PAYLOAD, level, zero))
 
     def estimate(self, time: float, reference: Reference) -> Estimate:
         """Apply all measurements that were added, and predict to ``time``, when the next set-points take effect (s)."""
@@ -240,7 +216,7 @@ class Estimator:
     def _advance(self, time: float, reference: Reference, adapt: bool = True) -> Estimate:
         """Apply the pending measurements and predict to ``time`` (s)."""
         process, health, kf, last = self._process, self.health, self._filter, self._replay.snapshots[-1]
-        pending = self._replay.pending()
+        pending = self._replay.after(self.time)
         time = max(time, last.time, pending[-1].time if pending else time)
         times = [moment.time for moment in pending]
         interval = PropagationInterval(process, last.time, times, time, self.setpoints, reference)
@@ -251,7 +227,7 @@ class Estimator:
         moment, k = next(moments, None), 0
         while moment is not None:
             if moment.time > interval.times[k]:
-                kf.predict(interval, k, health.adaptation.process_scale)
+                kf.advance(interval, k, health.adaptation.process_scale)
                 k += 1
                 continue
             record = self._update.apply(kf, moment, interval.flat, k, adapt)

@@ -94,7 +94,7 @@ class MeasurementUpdate:
                 measured = measured[accepted_of_all[heights] & accepted_of_all[heights + 3]]
             if degrees_of_freedom < usable:
                 innovation, variance = innovation.subset(accepted), variance[accepted]
-            squared = filter.update(innovation, variance, measured)
+            squared = filter.apply(innovation, variance, measured)
         ratios = test.ratios if stack is whole else _of_channels_present(test.ratios, whole, present)
         return InnovationRecord(
             moment.time, squared, degrees_of_freedom, tuple(keys[c] for c in rejected),

@@ -76,46 +76,36 @@ class PropagationInterval:
         )  # fmt: skip
 
 
-class ErrorStateFilter:
+class ErrorStateFilter(StructuredKalmanFilter):
     """Kalman filter on the error about the exact reference of one propagation interval after the other."""
 
     def __init__(self, process: ProcessModel) -> None:
+        super().__init__(dim_x=process.size, dim_z=1)
         self.process = process
-        self._kf = StructuredKalmanFilter(dim_x=process.size, dim_z=1)
         self._nominal = np.zeros((1, process.size))
-
-    @property
-    def x(self) -> Array:
-        """Error state (n,)."""
-        return np.asarray(self._kf.x)
-
-    @property
-    def P(self) -> Array:
-        """Covariance (n, n)."""
-        return np.asarray(self._kf.P)
 
     def start(self, x: Array, P: Array, interval: PropagationInterval) -> None:
         """Begin an ``interval`` from the absolute state ``x`` (n,) with covariance ``P`` (n, n)."""
         self._nominal = interval.nominal
-        self._kf.x, self._kf.P = x - interval.nominal[0], P
+        self.x, self.P = x - interval.nominal[0], P
 
     def state(self, k: int) -> Array:
         """Return the absolute state (n,) at time ``k`` of the interval."""
-        return np.asarray(self._kf.x + self._nominal[k])
+        return np.asarray(self.x + self._nominal[k])
 
-    def predict(self, interval: PropagationInterval, k: int, force_scale: float) -> None:
+    def advance(self, interval: PropagationInterval, k: int, force_scale: float) -> None:
         """Propagate from time ``k`` to the next under the set-points in force; ``force_scale``: of process noise."""
         _, change, probability = interval.setpoints[k]
         duration = interval.durations[k]
-        self._kf.propagate(
+        self.propagate(
             self.process.transition(duration), interval.force_of_mass[k], interval.input(k),
             self.process.noise(duration, force_scale), _NONE if change is None else change, probability,
         )  # fmt: skip
-        self._kf.x = self._kf.x + interval.defect(k)
+        self.x = self.x + interval.defect(k)
 
     def state_ahead(self, interval: PropagationInterval, k: int) -> Array:
         """Return the absolute state (n,) at the end of the interval from that at time ``k``, which remains."""
-        x = self._kf.x
+        x = self.x
         for later in range(k, len(interval.times) - 1):
             transition = self.process.transition(interval.durations[later])
             x = transition.state(x, interval.force_of_mass[later], interval.input(later)) + interval.defect(later)
@@ -124,17 +114,17 @@ class ErrorStateFilter:
     @property
     def is_finite(self) -> bool:
         """Return whether state and covariance are numbers."""
-        return are_finite(self._kf.x, self._kf.P)
+        return are_finite(self.x, self.P)
 
     def restart(self, P: Array) -> None:
         """Begin anew from the reference with covariance ``P`` (n, n)."""
-        self._kf.x, self._kf.P = np.zeros(self.process.size), P
+        self.x, self.P = np.zeros(self.process.size), P
 
     def inflate(self, added: Array) -> None:
         """Add ``added`` (n, n) to the covariance."""
-        self._kf.P = self._kf.P + added
+        self.P = self.P + added
 
-    def update(self, innovation: Innovation, variance: Array, measured: Indices) -> float:
+    def apply(self, innovation: Innovation, variance: Array, measured: Indices) -> float:
         """Correct by measurements and return their normalised innovation squared.
 
         Args:
@@ -142,8 +132,8 @@ class ErrorStateFilter:
             variance: of the measurements (m,).
             measured: UAVs whose position and velocity are among them.
         """
-        squared = self._kf.correct(innovation, variance)
-        self.process.add_per_vehicle_noise(self._kf.P, measured)
+        squared = self.correct(innovation, variance)
+        self.process.add_per_vehicle_noise(self.P, measured)
         return squared
 
 
@@ -190,5 +180,5 @@ class Outlook(NamedTuple):
         filter = ErrorStateFilter(self.process)
         filter.start(self.interval.nominal[0], self.P, self.interval)
         for k in range(self.k, end):
-            filter.predict(self.interval, k, self.force_scale)
+            filter.advance(self.interval, k, self.force_scale)
         return filter.P

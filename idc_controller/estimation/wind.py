@@ -17,49 +17,6 @@ from idc_controller.estimation.settings import WindSettings
 from idc_controller.model.drag import Air, drag_coefficients, payload_drag
 
 
-class _Sums:
-    """Integrals over the memory of what winds on the grid explain of the forces."""
-
-    def __init__(self, shape: tuple[int, ...], period: float, memory: float) -> None:
-        self._period, self._keep = period, float(np.exp(-period / memory))
-        self._has_drag = False
-        self.product = np.zeros(shape)
-        """F . drag (N2 s), for each wind."""
-        self.square = np.zeros(shape)
-        """|drag|^2 (N2 s), for each wind."""
-        self.force_square = 0.0
-        """|F|^2 (N2 s)."""
-        self.mean, self.time = np.zeros(2), 0.0  # F (N s), and how much of the memory is filled (s)
-        self.uav_product = self.uav_square = 0.0  # of a UAV, its drag as the square of the airspeed (N m2, m4/s3)
-
-    def fade(self) -> None:
-        """Let the past of all integrals fade over one period."""
-        keep = self._keep
-        if self._has_drag:
-            self.product *= keep
-            self.square *= keep
-        self.mean *= keep
-        self.force_square, self.time = keep * self.force_square, keep * self.time
-        self.uav_product, self.uav_square = keep * self.uav_product, keep * self.uav_square
-
-    def add_force(self, force: Array) -> None:
-        """Add the level force F (2,) (N) over one period."""
-        self.force_square += self._period * float(force @ force)
-        self.mean += self._period * force
-        self.time += self._period
-
-    def add_drag(self, force: Array, drag: Array) -> None:
-        """Add what the ``drag`` (..., 2) (N) of each wind explains of F (2,) (N) over one period."""
-        self._has_drag = True
-        self.product += self._period * (drag @ force)
-        self.square += self._period * np.einsum("ijk,ijk->ij", drag, drag)
-
-    def add_uav_drag(self, force: Array, drag: Array) -> None:
-        """Add the same of a UAV: its force (2,) (N), and its ``drag`` (2,) as the square of the airspeed (m2/s2)."""
-        self.uav_product += self._period * float(force @ drag)
-        self.uav_square += self._period * float(drag @ drag)
-
-
 class WindEstimator:
     """Learns the wind from the estimated forces of one control step after the other."""
 
@@ -83,7 +40,16 @@ class WindEstimator:
         self._unit = unit = 2.0 * s.gust_force**2 * s.gust_time
         self._factor_prior = 0.5 * unit / s.factor_sigma**2
         self._wind_prior = 0.5 * unit / s.speed_sigma**2 * (north**2 + east**2)
-        self._sums = _Sums(north.shape, period, s.memory)
+        self._period, self._keep = period, float(np.exp(-period / s.memory))
+        # Integrals over the memory.
+        self._product = np.zeros(north.shape)
+        """F . drag (N2 s), for each wind on the grid."""
+        self._square = np.zeros(north.shape)
+        """|drag|^2 (N2 s), for each wind."""
+        self._force_square = 0.0
+        """|F|^2 (N2 s)."""
+        self._mean, self._time = np.zeros(2), 0.0  # F (N s), and how much of the memory is filled (s)
+        self._uav_product = self._uav_square = 0.0  # of a UAV, its drag as the square of the airspeed (N m2, m4/s3)
         self.air: Air | None = None
         """Estimated wind and drag; None: no wind."""
 
@@ -95,35 +61,47 @@ class WindEstimator:
             uav_force: that on each UAV (3,) (N, NED).
             velocity: of the payload (3,) (m/s, NED).
         """
-        s, sums = self.settings, self._sums
-        sums.fade()
-        sums.add_force(force[:2])
+        s, keep, period, level_force, level_uav_force = (
+            self.settings,
+            self._keep,
+            self._period,
+            force[:2],
+            uav_force[:2],
+        )
+        self._product *= keep
+        self._square *= keep
+        self._force_square = keep * self._force_square + period * float(level_force @ level_force)
+        self._mean = keep * self._mean + period * level_force
+        self._time = keep * self._time + period
+        self._uav_product, self._uav_square = keep * self._uav_product, keep * self._uav_square
         least = s.force_min**2 * s.memory
-        if sums.force_square < least:
+        if self._force_square < least:
             self.air = None
             return
         drag = payload_drag(self._coefficients, self._winds - velocity)[..., :2]
-        sums.add_drag(force[:2], drag)
+        self._product += period * (drag @ level_force)
+        self._square += period * np.einsum("ijk,ijk->ij", drag, drag)
         prior = self._factor_prior
-        factor = np.clip((sums.product + prior) / (sums.square + prior), 0.0, s.factor_max)
-        cost = factor * (factor * sums.square - 2.0 * sums.product)
+        factor = np.clip((self._product + prior) / (self._square + prior), 0.0, s.factor_max)
+        cost = factor * (factor * self._square - 2.0 * self._product)
         cost += prior * (factor - 1.0) ** 2 + self._wind_prior
         best = np.unravel_index(int(np.argmin(cost)), cost.shape)
         wind = np.array([self._axis[best[0]] + self._vertex(cost[:, best[1]], int(best[0])),
                          self._axis[best[1]] + self._vertex(cost[best[0]], int(best[1])), 0.0])  # fmt: skip
         airspeed = wind - velocity
         uav_drag = float(np.linalg.norm(airspeed)) * airspeed[:2]
-        sums.add_uav_drag(uav_force[:2], uav_drag)
+        self._uav_product += period * float(level_uav_force @ uav_drag)
+        self._uav_square += period * float(uav_drag @ uav_drag)
         low, high = s.explained_min, s.explained_full
-        explained = -(float(cost[best]) + least) / sums.force_square
+        explained = -(float(cost[best]) + least) / self._force_square
         weight = float(np.clip((explained - low) / (high - low), 0.0, 1.0))
         # A force that is the same at all velocities is no wind.
-        steady = sums.force_square - float(sums.mean @ sums.mean) / sums.time
-        weight *= float(np.clip(2.0 - (sums.force_square + float(cost[best]) - steady) / self._unit, 0.0, 1.0))
+        steady = self._force_square - float(self._mean @ self._mean) / self._time
+        weight *= float(np.clip(2.0 - (self._force_square + float(cost[best]) - steady) / self._unit, 0.0, 1.0))
         if weight == 0.0:
             self.air = None
             return
-        uav = max(sums.uav_product / sums.uav_square, 0.0) if sums.uav_square > 0.0 else 0.0
+        uav = max(self._uav_product / self._uav_square, 0.0) if self._uav_square > 0.0 else 0.0
         self.air = Air(wind, weight * float(factor[best]) * self._coefficients, weight * uav, self._limit)
 
     def _vertex(self, cost: Array, best: int) -> float:

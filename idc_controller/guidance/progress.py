@@ -18,20 +18,12 @@ from idc_controller.trajectory.trajectory import RestTrajectory, ScaledReference
 class Guidance:
     """Follows the mission at its own speed: progress is time. Where a controller does not avoid obstacles."""
 
-    @property
-    def rate(self) -> float:
-        """Progress rate in force."""
-        return 1.0
-
-    @property
-    def sight(self) -> SightLimit:
-        """Limit of the progress rate by sight."""
-        return SightLimit()
-
-    @property
-    def detours(self) -> int:
-        """Detours taken so far."""
-        return 0
+    rate = 1.0
+    """Progress rate in force."""
+    sight = SightLimit()
+    """Limit of the progress rate by sight."""
+    detours = 0
+    """Detours taken so far."""
 
     def reference(self, time: float, mission: Trajectory) -> ScaledReference:
         """Return the reference from ``time`` (s) on; the same object as before as long as nothing changes."""
@@ -93,21 +85,6 @@ class AdaptiveGuidance(Guidance):
         self._restart: tuple[float, float] | None = None
         """Time at which another mission was given and its progress then (s); until the next step."""
 
-    @property
-    def rate(self) -> float:
-        """Progress rate in force."""
-        return 1.0 if self._current is None else self._current.rate
-
-    @property
-    def sight(self) -> SightLimit:
-        """See :meth:`Guidance.sight`."""
-        return SightLimit() if self._by_sight is None else self._by_sight.last
-
-    @property
-    def detours(self) -> int:
-        """Detours taken so far."""
-        return self.navigator.detours
-
     def reference(self, time: float, mission: Trajectory) -> ScaledReference:
         """See :meth:`Guidance.reference`."""
         current = self._current
@@ -122,6 +99,7 @@ class AdaptiveGuidance(Guidance):
             progress = self.navigator.watch(time, progress, self._held_up_rate(), mission, self._tracked)
         self._restart = None
         self._current = ScaledReference(self.navigator.followed(mission), time, progress, self._next_rate)
+        self.rate, self.detours = self._next_rate, self.navigator.detours
         return self._current
 
     def observe(
@@ -140,7 +118,7 @@ class AdaptiveGuidance(Guidance):
         rate_in_wind = None if air is None else self._rate_in_wind(self._current, deviation, air)
         current = self._current
         if self._by_sight is not None:
-            self._by_sight.update(current.start, current, tracked)
+            self.sight = self._by_sight.last = self._by_sight.limit(current.start, current, tracked)
         # What misses half of the margin slows the progress down, and all of it is rest: a slower plan keeps it. Before
         # what comes nearer, resting would not help.
         lag = max(lag, missed / self.navigator.settings.margin * self.settings.lag_at_rest)

@@ -149,10 +149,6 @@ class SpeedBySight:
         """Return the speed (m/s) from which the formation stops within a ``distance`` (m)."""
         return self._solved(1.0 / (2.0 * self.settings.limits.acceleration), distance)
 
-    def update(self, time: float, reference: ScaledReference, tracked: PayloadTrajectory) -> None:
-        """Find the limit at ``time`` (s), for the ``tracked`` plan about a ``reference``."""
-        self.last = self.limit(time, reference, tracked)
-
     def limit(self, time: float, reference: ScaledReference, tracked: PayloadTrajectory) -> SightLimit:
         """Return the limit at ``time`` (s), for the ``tracked`` plan about a ``reference``."""
         if not self._sight.has_sight:

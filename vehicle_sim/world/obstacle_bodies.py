@@ -43,7 +43,8 @@ class ObstacleBodies:
         self._client = client
         self._obstacles: dict[str, Obstacle] = {}
         self._bodies: dict[str, _Body] = {}
-        self._ray_bodies = RayBodies.of(())
+        self.ray_bodies = RayBodies.of(())
+        """The obstacles as rays meet them."""
         self.travelled = 0.0
 
     def all(self) -> tuple[Obstacle, ...]:
@@ -53,11 +54,6 @@ class ObstacleBodies:
     def __getitem__(self, name: str) -> Obstacle:
         """Return an obstacle at the current time."""
         return self._obstacles[name]
-
-    @property
-    def ray_bodies(self) -> RayBodies:
-        """The obstacles as rays meet them."""
-        return self._ray_bodies
 
     def body(self, name: str) -> int:
         """Return the engine's handle. Raises :class:`SimulationError` for an unknown name."""
@@ -86,7 +82,7 @@ class ObstacleBodies:
         )  # fmt: skip
         self._bodies[name] = _Body(handle, attitude, len(self._bodies))
         self._obstacles[name] = Obstacle(name, shape, place)
-        self._ray_bodies = self._ray_bodies.and_body(shape, place)
+        self.ray_bodies = self.ray_bodies.and_body(shape, place)
         self.travelled += _FAR_AWAY
 
     def move(self, name: str, position_in_world: Sequence[float]) -> None:
@@ -95,7 +91,7 @@ class ObstacleBodies:
         if place == obstacle.position_in_world:
             return
         self._obstacles[name] = Obstacle(name, obstacle.shape, place)
-        self._ray_bodies.centres[body.row] = place
+        self.ray_bodies.centres[body.row] = place
         self.travelled += math.dist(place, obstacle.position_in_world)
         pybullet.resetBasePositionAndOrientation(body.handle, flipped(place), body.attitude, self._client)
 

@@ -77,7 +77,8 @@ class World:
         self._cradles = Cradles(client, self._system.body, self._system.uavs, weights, settings.cradles)
         self._readings = Readings(client, self._system, parameters, 1.0 / self.physics_hz)
         self.steps = 0
-        self._thrusts = (0.0,) * parameters.number_of_uavs
+        self.thrusts = (0.0,) * parameters.number_of_uavs
+        """The UAVs' thrusts of the last step (N)."""
         self._uav_forces: Sequence[Sequence[float]] | None = None
         """External forces of the last step on the UAVs."""
         self._contacts = ContactDetector(
@@ -133,7 +134,7 @@ class World:
             self._push(payload_force, uav_forces)
         _step_simulation(client)
         self.steps += 1
-        self._thrusts, self._uav_forces = tuple(thrusts), uav_forces
+        self.thrusts, self._uav_forces = tuple(thrusts), uav_forces
         self._readings.update()
         if self._cradles.number_held or self.contacts() is not NO_CONTACTS:
             self._readings.restart()
@@ -162,11 +163,6 @@ class World:
         """Return the true states of payload and UAVs after the last step, (N + 1, 13) as in :mod:`.state_kernels`."""
         return self._readings.states
 
-    @property
-    def thrusts(self) -> tuple[float, ...]:
-        """The UAVs' thrusts of the last step (N)."""
-        return self._thrusts
-
     def link_tensions(self) -> list[float]:
         """Return the tension of each link over the last step (N) (N); negative: compression.
 
@@ -174,8 +170,8 @@ class World:
         payload the ground.
         """
         if self.contacts().pairs:
-            return [math.nan] * len(self._thrusts)
-        tensions, cradles = self._readings.link_tensions(self._thrusts, self._uav_forces), self._cradles
+            return [math.nan] * len(self.thrusts)
+        tensions, cradles = self._readings.link_tensions(self.thrusts, self._uav_forces), self._cradles
         if not cradles.number_held:
             return tensions
         return [math.nan if cradles.held(i) else tension for i, tension in enumerate(tensions)]
@@ -190,7 +186,7 @@ class World:
         held = self._cradles.held
         return WorldState(
             self.steps / self.physics_hz, position, quaternion, velocity, rates,
-            tuple(UavState(*parts, self._thrusts[i], held(i)) for i, parts in enumerate(uavs)),
+            tuple(UavState(*parts, self.thrusts[i], held(i)) for i, parts in enumerate(uavs)),
         )  # fmt: skip
 
     @property

@@ -44,16 +44,12 @@ class DeadReckoning:
         self._differences = np.zeros((sources, 256, 4))
         self._counts = np.zeros((sources, 5), dtype=int)
         self._ratio = np.full(sources, np.nan)
-        self._groups: tuple[SensorGroup, ...] = ()
-
-    @property
-    def inconsistent_groups(self) -> tuple[SensorGroup, ...]:
+        self.inconsistent_groups: tuple[SensorGroup, ...] = ()
         """Groups whose poses contradict their motions.
 
         Most vehicles' positions, while the payload unit's are consistent; or the other way round; or the payload
         unit's attitude.
         """
-        return self._groups
 
     def add(self, samples: SampleStack) -> None:
         """Take the poses of one moment with their motions."""
@@ -65,7 +61,7 @@ class DeadReckoning:
         if 2 * longest >= self._differences.shape[1]:
             self._differences = np.concatenate([self._differences, np.zeros_like(self._differences)], axis=1)
         if tests:
-            self._groups = self._inconsistent()
+            self.inconsistent_groups = self._inconsistent()
 
     def is_inconsistent(self, uav: int) -> bool:
         """Return whether the position of a UAV contradicts its velocity."""
