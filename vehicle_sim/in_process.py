@@ -1,23 +1,26 @@
 """The simulated world as :mod:`gcs` flies it in its own process: the entry point ``pybullet`` of ``cooplift.world``."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from gcs.drivers.in_process import GROUND
 from gcs.errors import UnusableInput
 from gcs.mavlink.address import THIS_MACHINE, VEHICLE_PORT, Address
 from gcs.mission.model import Mission
-from gcs.record.faults import FAULTS_FILE
 from gcs.record.incomplete import Incomplete, IncompleteRecords
-from gcs.record.run_folder import UnwritableFile
 from vehicle_sim.world.engine_messages import greeting_of_engine_dropped
 
 with greeting_of_engine_dropped():
     from vehicle_sim.swarm import Swarm
-from vehicle_sim.faults.disturbances import Disturbances
 from vehicle_sim.world.errors import SimulationError
 from vehicle_sim.world.truth_log import TruthLog
+
+if TYPE_CHECKING:
+    from vehicle_sim.faults.fault_injector import FaultInjector
 
 
 class InProcessWorld:
@@ -74,18 +77,11 @@ class InProcessWorld:
         """Return when :meth:`datagrams_to_send` has something to do next (s); None: never."""
         return self.swarm.next_timer()
 
-    def record_faults(self, faults: Disturbances, run_dir: Path) -> None:
-        """Record at the end what ``faults`` have affected."""
-        from vehicle_sim.faults.fault_injector import FaultInjector, record_faults
+    def record_faults(self, injector: FaultInjector, run_dir: Path) -> None:
+        """Record at the end what the faults have affected."""
+        from vehicle_sim.faults.fault_injector import record_faults
 
-        def record() -> None:
-            assert isinstance(faults, FaultInjector)
-            try:
-                record_faults(run_dir, faults, self.swarm.time)
-            except UnwritableFile as error:
-                self._faults_record.add(run_dir / FAULTS_FILE, error.cause)
-
-        self._closing.callback(record)
+        self._closing.callback(lambda: record_faults(run_dir, injector, self.swarm.time, self._faults_record))
 
     def close(self) -> None:
         """End the world and its records; harmless when that is done."""

@@ -11,6 +11,7 @@ from programs import PATIENCE, process
 from scripted_ground import ScriptedGround, exchange
 
 from gcs.record.faults import fault_notes
+from gcs.record.incomplete import IncompleteRecords
 from gcs.record.reader import read_table
 from vehicle_sim.faults.active import ActiveFault
 from vehicle_sim.faults.fault_injector import FaultInjector, record_faults
@@ -67,7 +68,8 @@ def test_truth_repeats_to_the_byte_with_same_seed_and_faults(tmp_path):
     for name, (mixed, seed) in runs.items():
         (tmp_path / name).mkdir()
         _, injector, swarm = lifted(*mixed, seed=seed, folder=tmp_path / name)
-        faults[name] = record_faults(tmp_path / name, injector, swarm.time).read_bytes()
+        record_faults(tmp_path / name, injector, swarm.time, IncompleteRecords())
+        faults[name] = (tmp_path / name / "faults.json").read_bytes()
         truth[name] = (tmp_path / name / "truth.csv").read_bytes()
     assert truth["a"] == truth["b"] and faults["a"] == faults["b"]
     assert truth["a"] != truth["c"] and truth["a"] != truth["d"]
@@ -82,7 +84,7 @@ def test_truth_repeats_to_the_byte_with_same_seed_and_faults(tmp_path):
 
 def test_fault_that_never_began_is_on_record(tmp_path):
     _, injector, swarm = lifted(fault("packet_loss", 1000.0, probability=1.0), fault("partition", 0.5), until=3.0)
-    record_faults(tmp_path, injector, swarm.time)
+    record_faults(tmp_path, injector, swarm.time, IncompleteRecords())
     (note,) = fault_notes(tmp_path)
     assert "fault 1, packet_loss" in note and "never came" in note
 

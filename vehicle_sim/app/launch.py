@@ -21,7 +21,7 @@ from gcs.mission.model import Mission
 from gcs.mission.read import read_mission
 from gcs.numerics import differences
 from gcs.record.incomplete import INCOMPLETE, IncompleteRecords, in_one_line
-from gcs.record.run_folder import NewRunFolder, UnwritableFile, check_run_folder, write_manifest
+from gcs.record.run_folder import NewRunFolder, check_run_folder, write_manifest
 from vehicle_sim.app.arguments import ClientPorts
 from vehicle_sim.app.drivers import LOG, LockstepDriver, RealTimeDriver
 from vehicle_sim.app.ending import Ending
@@ -142,14 +142,11 @@ def _truth_log(
 
 def _report_faults(options: Namespace, injector: FaultInjector, swarm: Swarm, incomplete: IncompleteRecords) -> None:
     """Record what the faults affected, and print notes on those that affected nothing."""
-    from gcs.record.faults import FAULTS_FILE, notes_of
+    from gcs.record.faults import notes_of
     from vehicle_sim.faults.fault_injector import faults_record, record_faults
 
     if options.run_dir is not None:
-        try:
-            record_faults(options.run_dir, injector, swarm.time)
-        except UnwritableFile as error:
-            incomplete.add(options.run_dir / FAULTS_FILE, error.cause)
+        record_faults(options.run_dir, injector, swarm.time, incomplete)
     if not options.with_parent:
         for note in notes_of(faults_record(injector, swarm.time)):
             print(note, file=sys.stderr, flush=True)

@@ -8,11 +8,12 @@ from typing import Any, TypeVar
 from gcs.config import SystemConfig
 from gcs.mission.model import Fault
 from gcs.record.faults import FAULTS_FILE
-from gcs.record.run_folder import write_json
+from gcs.record.incomplete import IncompleteRecords
+from gcs.record.run_folder import UnwritableFile, write_json
 from vehicle_sim.faults import link, sensors, timing, values  # noqa: F401 -- each has impairments of its kinds
 from vehicle_sim.faults.active import ActiveFault
 from vehicle_sim.faults.disturbances import Datagram, Disturbances, Forces
-from vehicle_sim.faults.impairment import OWN, PAYLOAD, REPORTED, SCAN, LinkImpairment, SampleImpairment
+from vehicle_sim.faults.impairment import OWN, PAYLOAD, REPORTED, SCAN, Impairment, LinkImpairment, SampleImpairment
 from vehicle_sim.faults.world import WorldFaults
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
@@ -44,12 +45,14 @@ class FaultInjector(Disturbances):
             if kind in timing.CLOCKS:
                 for vehicle in fault.vehicles:
                     self._clocks.setdefault(vehicle, []).append(fault)
-            elif kind in LinkImpairment.of_kind:
-                self._impair_link(fault, LinkImpairment.of_kind[kind])
-            elif found := [cls for of, cls in SampleImpairment.of_kind.items() if issubclass(kind, of)]:
-                for vehicle, impairment in found[0].of_vehicles(fault, system).items():
-                    for hook in impairment.acts_on:
-                        self._samples.setdefault((hook, vehicle), []).append(impairment)
+                continue
+            impairment = next((cls for of, cls in Impairment.of_kind.items() if issubclass(kind, of)), None)
+            if impairment is not None and issubclass(impairment, LinkImpairment):
+                self._impair_link(fault, impairment)
+            elif impairment is not None and issubclass(impairment, SampleImpairment):
+                for vehicle, of_vehicle in impairment.of_vehicles(fault, system).items():
+                    for hook in of_vehicle.acts_on:
+                        self._samples.setdefault((hook, vehicle), []).append(of_vehicle)
         world = [fault for fault in self.faults if fault.kind.family == "world"]
         self.any_of_world = bool(world)
         self._world = WorldFaults(world, system.world.air)
@@ -148,9 +151,12 @@ class FaultInjector(Disturbances):
 _LISTED = 1000  # occurrences that are listed
 
 
-def record_faults(folder: Path, injector: FaultInjector, end: float) -> Path:
-    """Write the file; ``end`` of the flight in s. Raises :class:`gcs.record.run_folder.UnwritableFile`."""
-    return write_json(folder / FAULTS_FILE, faults_record(injector, end))
+def record_faults(folder: Path, injector: FaultInjector, end: float, incomplete: IncompleteRecords) -> None:
+    """Write the file; ``end`` of the flight in s. It is added to what is ``incomplete`` if it cannot be written."""
+    try:
+        write_json(folder / FAULTS_FILE, faults_record(injector, end))
+    except UnwritableFile as error:
+        incomplete.add(folder / FAULTS_FILE, error.cause)
 
 
 def faults_record(injector: FaultInjector, end: float) -> dict[str, Any]:

@@ -12,8 +12,6 @@ from gcs.faults import Direction
 from gcs.mavlink.frames import V2, spans
 from vehicle_sim.faults.active import TOLERANCE, ActiveFault, Moment
 from vehicle_sim.faults.disturbances import Datagram
-from vehicle_sim.world.range_sensor import RangeSample
-from vehicle_sim.world.sensors import Measurement, ReportedState
 
 
 class Frame(NamedTuple):
@@ -44,18 +42,23 @@ def frames(datagram: bytes) -> Iterator[Frame]:
         yield Frame(start, end, body + length, system, component, number, datagram[body : body + min(length, 4)])
 
 
-class LinkImpairment(ABC):
-    """What one kind of fault does to datagrams while it is active; else they pass unchanged."""
+class Impairment:
+    """What one kind of fault does."""
 
-    of_kind: ClassVar[dict[type, type["LinkImpairment"]]] = {}
-    """The impairment of each kind of fault, by the kind's parameters."""
-    direction: ClassVar[Direction | None] = None
-    """Direction of a kind that is bound to one; None: the mission's."""
+    of_kind: ClassVar[dict[type, type["Impairment"]]] = {}
+    """The impairment of each kind of fault, by the kind's parameters or their base class."""
 
     def __init_subclass__(cls, of: type | None = None) -> None:
-        """``of``: parameters of the kind of fault."""
+        """``of``: parameters of the kind of fault, or their base class."""
         if of is not None:
-            LinkImpairment.of_kind[of] = cls
+            Impairment.of_kind[of] = cls
+
+
+class LinkImpairment(Impairment, ABC):
+    """What one kind of fault does to datagrams while it is active; else they pass unchanged."""
+
+    direction: ClassVar[Direction | None] = None
+    """Direction of a kind that is bound to one; None: the mission's."""
 
     def __init__(self, fault: ActiveFault, generator: np.random.Generator) -> None:
         self.fault = fault
@@ -157,40 +160,21 @@ class GilbertElliottProcess:
 
 
 OWN, REPORTED, PAYLOAD, SCAN = "own", "reported", "payload", "scan"
+"""Where a fault acts on samples: methods that take a vehicle (its system id), a sample and the moment.
+
+What the vehicle's autopilot gets of its own measurement (None: nothing), what the vehicle reports of itself, what it
+relays of the payload's navigation unit (None: nothing), and what it detects in a scan.
+"""
 
 
-class SampleImpairment:
-    """No change: every method returns its sample. ``acts_on`` names the methods that a kind of fault overrides."""
-
-    of_kind: ClassVar[dict[type, type["SampleImpairment"]]] = {}
-    """The impairment of each kind of fault, by the kind's parameters or their base class."""
-    acts_on: frozenset[str] = frozenset()
-
-    def __init_subclass__(cls, of: type | None = None) -> None:
-        """``of``: parameters of the kind of fault, or their base class."""
-        if of is not None:
-            SampleImpairment.of_kind[of] = cls
+class SampleImpairment(Impairment):
+    """What one kind of fault does to samples of one vehicle. ``acts_on``: which of its methods change anything."""
 
     def __init__(self, fault: ActiveFault, vehicle: int, system: SystemConfig) -> None:
         self.fault = fault
+        self.acts_on = frozenset(hook for hook in (OWN, REPORTED, PAYLOAD, SCAN) if hasattr(self, hook))
 
     @classmethod
     def of_vehicles(cls, fault: ActiveFault, system: SystemConfig) -> Mapping[int, Self]:
         """Return the impairment of each vehicle that the fault disturbs."""
         return {vehicle: cls(fault, vehicle, system) for vehicle in fault.vehicles}
-
-    def own(self, vehicle: int, sample: Measurement, moment: Moment) -> Measurement | None:
-        """Return what the vehicle's autopilot gets."""
-        return sample
-
-    def reported(self, vehicle: int, report: ReportedState, moment: Moment) -> ReportedState:
-        """Return what the vehicle reports of itself."""
-        return report
-
-    def payload(self, vehicle: int, sample: Measurement, moment: Moment) -> Measurement | None:
-        """Return what the vehicle relays of the payload's navigation unit."""
-        return sample
-
-    def scan(self, vehicle: int, sample: RangeSample, moment: Moment) -> RangeSample:
-        """Return what the vehicle detects."""
-        return sample

@@ -5,13 +5,16 @@ import math
 from gcs.config import SystemConfig
 from gcs.faults import sensors as kinds
 from vehicle_sim.faults.active import ActiveFault, Moment
-from vehicle_sim.faults.impairment import OWN, PAYLOAD, REPORTED, SCAN, SampleImpairment
+from vehicle_sim.faults.impairment import OWN, REPORTED, SampleImpairment
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
 
 
 class _Lost(SampleImpairment):
-    """A measurement that is missing from the telemetry, and stuck on board where the vehicle has lost it, too."""
+    """Measurements that are missing from the telemetry, and stuck on board where the vehicle has lost them, too."""
+
+    lost: tuple[str, ...]
+    """Their names in a :class:`Measurement`."""
 
     def __init__(self, fault: ActiveFault, vehicle: int, system: SystemConfig) -> None:
         super().__init__(fault, vehicle, system)
@@ -19,20 +22,17 @@ class _Lost(SampleImpairment):
         self._last: Measurement | None = None
         self._occurrence = -1
 
-    def last(self, sample: Measurement, moment: Moment) -> Measurement:
-        """Return the sample at which the measurement was lost."""
+    def own(self, vehicle: int, sample: Measurement, moment: Moment) -> Measurement:
+        """Return the sample with the values at which the measurement was lost."""
         if self._last is None or moment.occurrence != self._occurrence:
             self._occurrence, self._last = moment.occurrence, sample
-        return self._last
+        return sample._replace(**{name: getattr(self._last, name) for name in self.lost})
 
 
 class PositionLost(_Lost, of=kinds.PositionLost):
     """Loss of position and velocity."""
 
-    def own(self, vehicle: int, sample: Measurement, moment: Moment) -> Measurement:
-        """Return the sample with the last measured values."""
-        last = self.last(sample, moment)
-        return sample._replace(position=last.position, velocity=last.velocity)
+    lost = ("position", "velocity")
 
     def reported(self, vehicle: int, report: ReportedState, moment: Moment) -> ReportedState:
         """Return the report without it."""
@@ -42,9 +42,7 @@ class PositionLost(_Lost, of=kinds.PositionLost):
 class AttitudeLost(_Lost, of=kinds.AttitudeLost):
     """Loss of the attitude."""
 
-    def own(self, vehicle: int, sample: Measurement, moment: Moment) -> Measurement:
-        """Return the sample with the last measured values."""
-        return sample._replace(attitude=self.last(sample, moment).attitude)
+    lost = ("attitude",)
 
     def reported(self, vehicle: int, report: ReportedState, moment: Moment) -> ReportedState:
         """Return the report without it."""
@@ -54,9 +52,7 @@ class AttitudeLost(_Lost, of=kinds.AttitudeLost):
 class RatesLost(_Lost, of=kinds.RatesLost):
     """Loss of the body rates."""
 
-    def own(self, vehicle: int, sample: Measurement, moment: Moment) -> Measurement:
-        """Return the sample with the last measured rates."""
-        return sample._replace(rates=self.last(sample, moment).rates)
+    lost = ("rates",)
 
     def reported(self, vehicle: int, report: ReportedState, moment: Moment) -> ReportedState:
         """Return the report with rates of NaN: MAVLink's unknown value."""
@@ -66,8 +62,6 @@ class RatesLost(_Lost, of=kinds.RatesLost):
 
 class PositionGlitch(SampleImpairment, of=kinds.PositionGlitch):
     """Position that jumps away and back."""
-
-    acts_on = frozenset({OWN})
 
     def __init__(self, fault: ActiveFault, vehicle: int, system: SystemConfig) -> None:
         super().__init__(fault, vehicle, system)
@@ -99,8 +93,6 @@ class PositionGlitch(SampleImpairment, of=kinds.PositionGlitch):
 class PositionDrift(SampleImpairment, of=kinds.PositionDrift):
     """Position that drifts away."""
 
-    acts_on = frozenset({OWN})
-
     def own(self, vehicle: int, sample: Measurement, moment: Moment) -> Measurement:
         """Return the sample displaced by the drift."""
         t = moment.elapsed
@@ -112,16 +104,12 @@ class PositionDrift(SampleImpairment, of=kinds.PositionDrift):
 class PayloadUnitLost(SampleImpairment, of=kinds.PayloadUnitLost):
     """Loss of the payload's navigation unit."""
 
-    acts_on = frozenset({PAYLOAD})
-
     def payload(self, vehicle: int, sample: Measurement, moment: Moment) -> None:
         """Return nothing to relay."""
 
 
 class ObstacleSensingLost(SampleImpairment, of=kinds.ObstacleSensingLost):
     """Loss of the range sensor."""
-
-    acts_on = frozenset({SCAN})
 
     def scan(self, vehicle: int, sample: RangeSample, moment: Moment) -> RangeSample:
         """Return a scan of a failed sensor, of which nothing is sent: without any, the last one would stay in force."""

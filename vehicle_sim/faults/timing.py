@@ -5,7 +5,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.faults import timing as kinds
 from vehicle_sim.faults.active import ActiveFault, Moment
-from vehicle_sim.faults.impairment import PAYLOAD, REPORTED, SCAN, DatagramChange, Frame, SampleImpairment, frames
+from vehicle_sim.faults.impairment import DatagramChange, Frame, SampleImpairment, frames
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
 
@@ -92,8 +92,6 @@ def clock_error(fault: ActiveFault, now: float) -> float:
 
 class StaleStamps(SampleImpairment, of=kinds.StaleStamps):
     """Stamps of an earlier time on all that is reported."""
-
-    acts_on = frozenset({REPORTED, PAYLOAD, SCAN})
 
     def reported(self, vehicle: int, report: ReportedState, moment: Moment) -> ReportedState:
         """Return the report with earlier stamps."""

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -134,14 +134,16 @@ class ValueImpairment(SampleImpairment, of=kinds.ValueFault):
         return sample if unchanged else sample._replace(points=points)
 
     def _changed(self, sample: Measurement, moment: Moment) -> Measurement:
-        changed = change(sample, self._channel, self._effect, moment)
+        if self._channel == "attitude":
+            value: Any = quaternion_of(self._effect(rotation_vector(sample.attitude), moment))
+        else:
+            value = self._effect(getattr(sample, self._channel), moment)
+        changed = sample._replace(**{self._channel: value})
         return sample if changed == sample else changed
 
 
 class SwappedVehicles(SampleImpairment, of=kinds.SwappedVehicles):
     """Two vehicles that report each other's data; one object for both."""
-
-    acts_on = frozenset({REPORTED})
 
     def __init__(self, fault: ActiveFault, vehicle: int, system: SystemConfig) -> None:
         super().__init__(fault, vehicle, system)
@@ -170,16 +172,3 @@ def noise_of(channel: str, system: SystemConfig) -> float:
         "rates": sensors.uav_rates, "payload_rates": sensors.payload_rates,
         "obstacles": system.range_sensor.noise,
     }[channel]  # fmt: skip
-
-
-def change(sample: Measurement, channel: str, effect: ValueEffect, moment: Moment) -> Measurement:
-    """Return a sample with one of position, velocity, attitude, rates disturbed."""
-    match channel:
-        case "position":
-            return sample._replace(position=effect(sample.position, moment))
-        case "velocity":
-            return sample._replace(velocity=effect(sample.velocity, moment))
-        case "rates":
-            return sample._replace(rates=effect(sample.rates, moment))
-    vector = effect(rotation_vector(sample.attitude), moment)
-    return sample._replace(attitude=quaternion_of(vector))
