@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple, Self
+from typing import Self
 
 from gcs.config import SystemConfig
 from gcs.mavlink import px4
@@ -20,14 +20,6 @@ from vehicle_sim.world.truth_log import TruthLog
 from vehicle_sim.world.world import World
 
 _TIME_TOLERANCE = 1e-6  # s: sums of steps are not exact
-
-
-class _Periods(NamedTuple):
-    """Physics steps between onboard steps, rows of the truth, and scans of the range sensors."""
-
-    onboard: int
-    row: int
-    scan: int
 
 
 class Swarm:
@@ -69,9 +61,8 @@ class Swarm:
         self.take_off_time: float | None = None
         self._faults = faults or Disturbances()
         self._truth: TruthLog | None = None
-        self._periods = _Periods(
-            rates.physics // rates.onboard, rates.physics // rates.truth, rates.physics // config.range_sensor.rate
-        )
+        self._periods = [rates.physics // rate for rate in (rates.onboard, rates.truth, config.range_sensor.rate)]
+        """Physics steps between onboard steps, rows of the truth, and scans of the range sensors."""
         self._contacts = 0
         airframes = [Airframe.of_system(system, i, config.uav) for i in range(system.number_of_uavs)]
         onboard = config.onboard()
@@ -86,7 +77,7 @@ class Swarm:
         )  # fmt: skip
         rotors = Rotors(
             [airframe.rotors for airframe in airframes], [airframe.motor_time_constant for airframe in airframes],
-            1.0 / rates.physics, self._periods.onboard,
+            1.0 / rates.physics, self._periods[0],
         )  # fmt: skip
         self._team = Team(self.vehicles, arrays, rotors, config, seed, self._faults)
         self._modes_recorded = False

@@ -15,8 +15,8 @@ from gcs.flight.phase import Phase
 from gcs.flight.plan_monitor import ImpactMonitor, PlanMonitor
 from gcs.flight.preflight import Preflight
 from gcs.flight.team import Team
-from idc_controller.estimation.estimate import Estimate
 from idc_controller.estimation.estimator import Estimator
+from idc_controller.estimation.measurements import Estimate
 from idc_controller.guidance.progress import Guidance
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.trajectory.trajectory import Trajectory

@@ -11,8 +11,8 @@ import numpy as np
 from gcs.flight.compute_times import ComputeTimes, Part
 from idc_controller.arrays import Array
 from idc_controller.control.controller import Decision, IntegratedDecisionController
-from idc_controller.estimation.estimate import Estimate
 from idc_controller.estimation.estimator import Estimator
+from idc_controller.estimation.measurements import Estimate
 from idc_controller.trajectory.stop_plan import Braking, StopPlan, stop_plan
 from idc_controller.trajectory.trajectory import Trajectory
 

@@ -20,8 +20,7 @@ from gcs.flight.spool import Touchdown
 from gcs.flight.team import Team
 from gcs.mission.model import Mission
 from idc_controller.arrays import Array
-from idc_controller.estimation.estimate import Estimate
-from idc_controller.estimation.measurements import Measurement
+from idc_controller.estimation.measurements import Estimate, Measurement
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.trajectory.flatness import Reference
 from idc_controller.trajectory.trajectory import RestTrajectory, Trajectory

@@ -3,7 +3,7 @@
 import math
 
 from gcs.config.flight_settings import DEFAULTS, FlightSettings
-from idc_controller.estimation.estimate import Estimate
+from idc_controller.estimation.measurements import Estimate
 from idc_controller.model.linear import StateLayout
 from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.trajectory import Trajectory

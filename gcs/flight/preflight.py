@@ -67,7 +67,7 @@ class Preflight:
         """Take telemetry of a vehicle or of the payload unit on the ground."""
         if isinstance(measurement, Position) and measurement.has_pose:
             samples = self._positions[measurement.source]
-            samples.append(measurement.position)
+            samples.append(measurement.pose)
             del samples[: -self._settings.takeoff_landing.position_samples]
 
     def is_settled(self, time: float) -> bool:

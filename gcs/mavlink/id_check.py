@@ -33,7 +33,7 @@ class SystemIdCheck:
     def add(self, sample: Measurement) -> None:
         """Take a sample that was received as of the vehicle that is its source."""
         if sample.source != PAYLOAD and isinstance(sample, Position) and sample.has_pose:
-            self._positions[sample.source] = sample.position.tolist()
+            self._positions[sample.source] = sample.pose.tolist()
 
     def compare(self, places: Array) -> None:
         """Compare the samples since the last time with the estimated ``places`` (N, 3); once a control step."""

@@ -28,9 +28,8 @@ from gcs.record.tables import COLUMNS
 from gcs.record.verdict import GroundReport, verdict
 from idc_controller.arrays import Array
 from idc_controller.control.controller import plan
-from idc_controller.estimation.estimate import Estimate
 from idc_controller.estimation.measurement_model import MeasurementModel
-from idc_controller.estimation.measurements import MeasurementNoise, VehicleStates
+from idc_controller.estimation.measurements import Estimate, MeasurementNoise, VehicleStates
 from idc_controller.estimation.settings import MeasurementModelSettings
 from idc_controller.guidance.progress import Guidance
 from idc_controller.model.linear import LinearModel

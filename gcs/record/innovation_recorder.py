@@ -11,10 +11,9 @@ from gcs.record.tables import INNOVATION_COLUMNS, INNOVATIONS, Grid, TableWriter
 from idc_controller.estimation.measurements import PAYLOAD, Channel
 
 if TYPE_CHECKING:
-    from idc_controller.estimation.estimate import Estimate
     from idc_controller.estimation.estimator import Estimator
     from idc_controller.estimation.health.sensor_health import SensorHealth
-    from idc_controller.estimation.measurements import SensorKey
+    from idc_controller.estimation.measurements import Estimate, SensorKey
 
 INTERVAL = 0.1
 """s, between rows."""

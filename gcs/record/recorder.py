@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from gcs.flight.flight import Flight
     from idc_controller.arrays import Array
     from idc_controller.control.controller import Decision
-    from idc_controller.estimation.estimate import Estimate
+    from idc_controller.estimation.measurements import Estimate
     from idc_controller.perception.obstacle_map import ObstacleMap
 
 REFERENCE_INTERVAL = 0.02  # s, the grid of truth.csv

@@ -18,7 +18,7 @@ from gcs.reproduce.scene import (
     printed_reference,
 )
 from idc_controller.arrays import Array
-from idc_controller.estimation.estimate import Estimate
+from idc_controller.estimation.measurements import Estimate
 from idc_controller.geometry.formation import Formation
 from idc_controller.guidance.progress import Guidance
 from idc_controller.model.linear import LinearModel, StateLayout

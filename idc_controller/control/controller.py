@@ -20,7 +20,7 @@ from idc_controller.control.ground_controller import GroundController
 from idc_controller.control.load_adaptation import LoadAdaptation
 from idc_controller.control.mpc import Tracker
 from idc_controller.control.settings import ControllerSettings
-from idc_controller.estimation.estimate import Estimate
+from idc_controller.estimation.measurements import Estimate
 from idc_controller.guidance.progress import Guidance
 from idc_controller.guidance.sight import SightLimit
 from idc_controller.model.drag import Air

@@ -5,7 +5,7 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.control.force_components import limited
 from idc_controller.control.settings import ControllerSettings
-from idc_controller.estimation.estimate import Estimate
+from idc_controller.estimation.measurements import Estimate
 from idc_controller.estimation.wind import WindEstimator
 from idc_controller.model.drag import Air
 from idc_controller.model.linear import LinearModel

@@ -15,13 +15,14 @@ from typing import NamedTuple
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.estimation.estimate import Estimate, InnovationRecord
 from idc_controller.estimation.health.sensor_health import HealthSnapshot, SensorHealth
 from idc_controller.estimation.measurement_model import MeasurementModel
 from idc_controller.estimation.measurement_update import MeasurementUpdate, Moment
 from idc_controller.estimation.measurements import (
     PAYLOAD,
     Attitude,
+    Estimate,
+    InnovationRecord,
     Measurement,
     MeasurementNoise,
     Position,

@@ -5,12 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from idc_controller.arrays import Array, Mask
-from idc_controller.estimation.estimate import InnovationRecord
 from idc_controller.estimation.health.chi_squared import lower_quantile
 from idc_controller.estimation.health.noise_adaptation import InnovationTest, Reaction
 from idc_controller.estimation.health.sensor_health import SensorHealth
 from idc_controller.estimation.measurement_model import MeasurementModel, ObservationStack
-from idc_controller.estimation.measurements import Measurement, Position, SensorKey, median_of
+from idc_controller.estimation.measurements import InnovationRecord, Measurement, Position, SensorKey, median_of
 from idc_controller.estimation.propagation import ErrorStateFilter
 from idc_controller.estimation.settings import EstimatorSettings
 from idc_controller.trajectory.flatness import FlatReference

@@ -4,7 +4,7 @@ A pose or a motion that was not measured, or may not be used, is all nan.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, Self
 
@@ -53,35 +53,21 @@ class _Sample:
 
 
 class Attitude(_Sample):
-    """Attitude and body rates of a UAV or of the payload."""
+    """Attitude and body rates of a UAV or of the payload.
+
+    ``pose``: quaternion body to world, w first (4,); ``motion``: rates in the body frame (3,) (rad/s).
+    """
 
     __slots__ = ()
-
-    @property
-    def quaternion(self) -> Array:
-        """Body to world, w first (4,)."""
-        return self.pose
-
-    @property
-    def rates(self) -> Array:
-        """Body frame (3,) (rad/s)."""
-        return self.motion
 
 
 class Position(_Sample):
-    """Position and velocity of a UAV or of the payload's centre."""
+    """Position and velocity of a UAV or of the payload's centre.
+
+    ``pose``: position (3,) (m); ``motion``: velocity (3,) (m/s); world, NED.
+    """
 
     __slots__ = ()
-
-    @property
-    def position(self) -> Array:
-        """World, NED (3,) (m)."""
-        return self.pose
-
-    @property
-    def velocity(self) -> Array:
-        """World, NED (3,) (m/s)."""
-        return self.motion
 
 
 Measurement = Attitude | Position
@@ -174,3 +160,52 @@ class MeasurementNoise:
     uav_rates: float = 0.005
     payload_velocity: float = 0.008
     payload_rates: float = 0.008
+
+
+class InnovationRecord(NamedTuple):
+    """Innovation test of the measurements of one moment."""
+
+    time: float
+    """s"""
+    normalised_squared: float
+    """y' S^-1 y of the accepted rows; on average ``degrees_of_freedom``."""
+    degrees_of_freedom: int
+    rejected: tuple[SensorKey, ...]
+    """Sources and kinds that failed the test."""
+    covariance_reset: bool
+    """Most sources disagreed with the prediction, or it was no number: its covariance was reset."""
+    keys: tuple[SensorKey, ...]
+    """Sources and kinds of all measurements (K,)."""
+    sizes: Indices
+    """Rows of each (K,); they add up to m."""
+    normalised: Array
+    """Innovations, one measurement after the other, normalised to variance 1 (m,)."""
+    test_ratios: Array
+    """Normalised innovations squared of pose and motion over their gates (K, 2); above 1: rejected, nan: not tested."""
+
+
+class Estimate(NamedTuple):
+    """State at one moment. ``x`` (12 + 11 N,) in the linear model's coordinates, absolute."""
+
+    time: float
+    """s"""
+    x: Array
+    force: Array
+    """Disturbance force on the payload (3,) (N, NED)."""
+    uav_force: Array
+    """Level disturbance force on each UAV (N, 3) (N, NED)."""
+    mass_excess: float
+    """Payload mass less nominal (kg)."""
+    force_covariance: Array
+    """Of the force on the payload (3, 3) (N2)."""
+    predict_covariance: Callable[[], Array]
+    """Predicts :attr:`covariance`."""
+    innovations: tuple[InnovationRecord, ...] = ()
+    """Innovations applied since the last estimate, in order of time; those replayed come again."""
+    predict_payload_variances: Callable[[], Array] = lambda: np.full(12, np.nan)
+    """Predicts the variances of the payload's position, velocity, attitude (Euler angles) and rates (12,) squared."""
+
+    @property
+    def covariance(self) -> Array:
+        """Covariance of x, forces (3 + 2 N) and mass excess (12 + 13 N + 4,) squared; predicted at each access."""
+        return self.predict_covariance()

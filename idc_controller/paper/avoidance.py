@@ -20,7 +20,7 @@ import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.errors import SolverError
-from idc_controller.estimation.estimate import Estimate
+from idc_controller.estimation.measurements import Estimate
 from idc_controller.geometry.formation import Formation
 from idc_controller.geometry.obstacles import ObstacleSource, PredictedObstacle
 from idc_controller.model.linear import LinearModel

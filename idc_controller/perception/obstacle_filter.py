@@ -15,8 +15,7 @@ from idc_controller.perception.motion_imm import MotionImm, MotionModels
 from idc_controller.perception.seen_points_kernels import outermost, remembered
 from idc_controller.perception.settings import ObstacleFilterSettings, SurfaceSettings
 from idc_controller.perception.surfaces.flat import FlatSurface
-from idc_controller.perception.surfaces.known import KnownSurface
-from idc_controller.perception.surfaces.points import Fit, SurfacePoints
+from idc_controller.perception.surfaces.points import Fit, KnownSurface, SurfacePoints
 from idc_controller.perception.surfaces.round import RoundSurface
 
 Surface = RoundSurface | FlatSurface | KnownSurface

@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple, Protocol
 
 from idc_controller.arrays import Array
-from idc_controller.estimation.estimate import Estimate
+from idc_controller.estimation.measurements import Estimate
 from idc_controller.trajectory.flatness import PayloadTrajectory
 from idc_controller.trajectory.trajectory import ScaledReference
 

@@ -14,7 +14,6 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import BPoly
 
 from idc_controller.arrays import Array
 from idc_controller.model.linear import StateLayout
@@ -39,15 +38,6 @@ class Braking(NamedTuple):
     def duration(self, velocity: Array) -> float:
         """Return the time from a ``velocity`` (3,) (m/s) to rest (s)."""
         return self.share * self.settings.usual_duration(velocity)
-
-    def control_points(self, states: Array, duration: float) -> Array:
-        """Return those of the paths (P, 5, 3) (m) from position, velocity and acceleration in ``states`` (P, 3, 3)."""
-        return control_points(states, np.array([duration]), np.array([self.aside]))
-
-    def path(self, state: Array) -> BPoly:
-        """Return the path from ``state`` (3, 3) on, over the time since then (s)."""
-        duration = self.duration(state[1])
-        return BPoly(self.control_points(state[None], duration)[0][:, None, :], [0.0, duration])
 
 
 class StopPlan(NamedTuple):
@@ -102,7 +92,7 @@ def stop_plan(
     below = (hung / number).sum(axis=0)
     braking = choose(time, below)
     duration = braking.duration(below[1])
-    return StopPlan(time, duration, braking.control_points(state, duration))
+    return StopPlan(time, duration, control_points(state, np.array([duration]), np.array([braking.aside])))
 
 
 def control_points(states: Array, durations: Array, asides: Array) -> Array:

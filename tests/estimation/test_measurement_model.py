@@ -89,6 +89,6 @@ def test_estimated_vehicles_head_north_at_any_tilt(tilt):
         attitudes.append(model.vehicles(time, x).sample(0, Attitude))
     now, then = attitudes
     direction = [*tilt, -np.sqrt(1.0 - np.square(tilt).sum())]
-    assert now.quaternion == pytest.approx(attitude_of_direction(direction), abs=1e-12)
-    turned = quaternion_product(now.quaternion * [1.0, -1.0, -1.0, -1.0], then.quaternion)
-    assert 2.0 * turned[1:] / step == pytest.approx(now.rates, abs=1e-4)
+    assert now.pose == pytest.approx(attitude_of_direction(direction), abs=1e-12)
+    turned = quaternion_product(now.pose * [1.0, -1.0, -1.0, -1.0], then.pose)
+    assert 2.0 * turned[1:] / step == pytest.approx(now.motion, abs=1e-4)

@@ -25,8 +25,7 @@ from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.control.controller import IntegratedDecisionController
 from idc_controller.control.load_adaptation import LoadAdaptation
 from idc_controller.control.settings import ControllerSettings
-from idc_controller.estimation.estimate import Estimate
-from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Estimate, Position
 from idc_controller.estimation.setpoint_history import Confirmation
 from idc_controller.model.drag import Air, drag_coefficients
 from idc_controller.model.linear import LinearModel
@@ -86,15 +85,15 @@ def test_telemetry_becomes_measurement_of_its_source(sender, source):
         2, 7.5,
     )  # fmt: skip
     assert isinstance(position, Position) and (position.source, position.time) == (source, 7.5)
-    assert position.position == pytest.approx([1.0, -2.0, -3.0])
-    assert position.velocity == pytest.approx([0.1, -0.2, 0.3])
+    assert position.pose == pytest.approx([1.0, -2.0, -3.0])
+    assert position.motion == pytest.approx([0.1, -0.2, 0.3])
     attitude = measurement(
         received(mavlink.MAVLink_attitude_quaternion_message(1234, 0.8, 0.6, 0.0, 0.0, 0.1, -0.2, 0.3), *sender),
         2, 7.5,
     )  # fmt: skip
     assert isinstance(attitude, Attitude) and (attitude.source, attitude.time) == (source, 7.5)
-    assert attitude.quaternion == pytest.approx([0.8, 0.6, 0.0, 0.0])
-    assert attitude.rates == pytest.approx([0.1, -0.2, 0.3])
+    assert attitude.pose == pytest.approx([0.8, 0.6, 0.0, 0.0])
+    assert attitude.motion == pytest.approx([0.1, -0.2, 0.3])
 
 
 @pytest.mark.parametrize(

@@ -18,8 +18,7 @@ from gcs.mavlink import px4
 from gcs.mavlink.clock import RemoteClock
 from gcs.mavlink.id_check import SystemIdCheck
 from gcs.mavlink.vehicle_link import VehicleLink
-from idc_controller.estimation.estimate import Estimate, InnovationRecord
-from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Estimate, InnovationRecord, Position
 from idc_controller.model.linear import LinearModel
 from idc_controller.safety.filter_protocol import SafetyReport
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import shapely
 from avoidance_scene import avoidance, fly
+from braking_path import path_of
 from detours import detour_among, gap_among
 from mission_files import RETURN, TAKE_OFF, A, plan, polygon, read, refusal, row
 from paper_system import system
@@ -192,10 +193,10 @@ def test_area_that_nothing_comes_near_leaves_detours_as_they_are():
 @pytest.mark.parametrize("beyond", [0.05, 0.2, 0.5, 1.0])
 def test_team_without_set_points_comes_to_rest_inside_the_area(beyond):
     state = np.array([[0.0, 0.0, -5.0], [2.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
-    edge = Braking().path(state)(Braking().duration(state[1]))[0] - beyond
+    edge = path_of(Braking(), state)(Braking().duration(state[1]))[0] - beyond
     obstacles, area = fence((((-9.0, -9.0), (-9.0, 9.0), (edge, 9.0), (edge, -9.0)),))
     chosen = RestingPlace(read_system().parameters(), StandingObstacles(obstacles), area=area)(0.0, state)
-    assert area.contains(chosen.path(state)(chosen.duration(state[1]))[None])[0]
+    assert area.contains(path_of(chosen, state)(chosen.duration(state[1]))[None])[0]
 
 
 @pytest.mark.parametrize("edge", [-4.0, -1.5], ids=["along", "over"])

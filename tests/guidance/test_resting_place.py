@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from braking_path import path_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from standing_obstacles import StandingObstacles
@@ -18,7 +19,7 @@ PARAMETERS = read_system().parameters()
 #: Position, velocity, acceleration: 2 m/s north at 5 m.
 STATE = np.array([[0.0, 0.0, -5.0], [2.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 USUAL = Braking()
-REST = USUAL.path(STATE)(USUAL.duration(STATE[1]))
+REST = path_of(USUAL, STATE)(USUAL.duration(STATE[1]))
 WIDTH = 0.95  # m, more than the formation's half width
 
 
@@ -39,7 +40,7 @@ class Swinging:
 
 
 def rest_of(braking):
-    return braking.path(STATE)(braking.duration(STATE[1]))
+    return path_of(braking, STATE)(braking.duration(STATE[1]))
 
 
 @settings(deadline=None, derandomize=True)
@@ -58,7 +59,7 @@ def test_least_distance_of_kernel_agrees_with_plain_formula(shape, place, veloci
         USUAL.control_points(state[None], duration), np.array([duration]), elapsed, axis, 0.4,
         shape.row[None], np.array([shape.reach]), centres[None], growth[None], 2.0,
     )  # fmt: skip
-    places = USUAL.path(state)(np.minimum(elapsed, duration))
+    places = path_of(USUAL, state)(np.minimum(elapsed, duration))
     assert least[0] == pytest.approx(least_distance(shape, places, axis, centres, growth, 2.0), abs=1e-12)
 
 
@@ -71,7 +72,7 @@ def test_resting_place_beside_mesh_is_that_beside_box_of_its_corners():
 
 
 def test_default_braking_path_starts_with_current_motion_and_ends_at_rest():
-    braking_path = USUAL.path(STATE)
+    braking_path = path_of(USUAL, STATE)
     assert [braking_path.derivative(k)(0.0) for k in (1, 2)] == [pytest.approx(STATE[1]), pytest.approx(STATE[2])]
     assert braking_path.derivative()(braking_path.x[-1]) == pytest.approx(np.zeros(3))
 
@@ -165,7 +166,7 @@ def test_obstacles_are_considered_as_far_as_any_stop_leads(speed, acceleration):
         region = regions.pop()
         farthest = 0.0
         for stop in choose._choices.stops:
-            path = stop.path(state)
+            path = path_of(stop, state)
             places = path(np.linspace(0.0, path.x[-1], 50)) - region.place
             farthest = max(farthest, np.linalg.norm(places, axis=1).max())
         assert region.place == pytest.approx(state[0])

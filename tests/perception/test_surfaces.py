@@ -8,8 +8,7 @@ import pytest
 from idc_controller.geometry.shapes import Box
 from idc_controller.perception.settings import SurfaceSettings
 from idc_controller.perception.surfaces.flat import FlatSurface
-from idc_controller.perception.surfaces.known import KnownSurface
-from idc_controller.perception.surfaces.points import EndOfSurface, SurfacePoints
+from idc_controller.perception.surfaces.points import EndOfSurface, KnownSurface, SurfacePoints
 
 S = SurfaceSettings()
 EXTENSION = 0.7

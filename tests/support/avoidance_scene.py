@@ -9,7 +9,7 @@ from plain_flatness import flat_forces
 from scipy.spatial import ConvexHull
 
 from gcs.planning.flight import IdealTracking
-from idc_controller.estimation.estimate import Estimate
+from idc_controller.estimation.measurements import Estimate
 from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.shapes import Pole, Sphere, Wall
 from idc_controller.guidance.navigator import Navigator

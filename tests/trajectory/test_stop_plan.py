@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from braking_path import path_of
 from scipy.interpolate import BPoly
 
 from gcs.config import read_system
@@ -53,13 +54,13 @@ def test_resting_place_is_predicted_with_swinging_payload(time):
         return Braking(1.3, (0.8, 0.0, 0.0))
 
     plan = stop_plan(PARAMETERS, flat, time, choose=choose)
-    predicted = Braking(1.3, (0.8, 0.0, 0.0)).path(states[0])(plan.duration)
+    predicted = path_of(Braking(1.3, (0.8, 0.0, 0.0)), states[0])(plan.duration)
     hangs = plan.control_points[:, -1] - PARAMETERS.p + PARAMETERS.l[:, None] * [0.0, 0.0, 1.0]
     assert hangs == pytest.approx(np.tile(predicted, (PARAMETERS.number_of_uavs, 1)), abs=1e-6)
     times = np.array([0.0, 0.3 * plan.duration, plan.duration, plan.duration + 1.0])
-    path = Braking(1.3, (0.8, 0.0, 0.0)).path(states[0])(np.minimum(times, plan.duration))
+    path = path_of(Braking(1.3, (0.8, 0.0, 0.0)), states[0])(np.minimum(times, plan.duration))
     assert plan.payload_positions(PARAMETERS, times) == pytest.approx(path, abs=1e-6)
-    own = Braking(1.3, (0.8, 0.0, 0.0)).path(flat.payload[:3, 0])(plan.duration)
+    own = path_of(Braking(1.3, (0.8, 0.0, 0.0)), flat.payload[:3, 0])(plan.duration)
     assert np.linalg.norm(own - predicted) > 1.0
 
 

@@ -14,9 +14,8 @@ from test_swarm import CONFIG
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.lockstep import Done, decode_tick
 from gcs.record.reader import read_table
-from vehicle_sim.app.drivers import LockstepDriver, RealTimeClock, RealTimeDriver
+from vehicle_sim.app.drivers import LockstepDriver, RealTimeClock, RealTimeDriver, SwarmSockets
 from vehicle_sim.app.ending import Ending
-from vehicle_sim.app.sockets import SwarmSockets
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.errors import SimulationError
 

@@ -13,9 +13,8 @@ from gcs.config.tables import WorldConfig
 from idc_controller.arrays import Array
 from idc_controller.parameters import SystemParameters
 from idc_controller.rotations_float import Quaternion, Vector
-from vehicle_sim.world.cradles import Cradles
 from vehicle_sim.world.errors import SimulationError
-from vehicle_sim.world.ground import NO_CONTACTS, ContactDetector, Contacts, Ground
+from vehicle_sim.world.ground import NO_CONTACTS, ContactDetector, Contacts, Cradles, Ground
 from vehicle_sim.world.multibody import check_supported, load_multibody
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
 from vehicle_sim.world.readings import Readings
@@ -228,18 +227,14 @@ class World:
         """Return True if the payload is low enough to stand on pad or ground."""
         return self._ground.is_near(self._readings.payload)
 
-    @property
-    def _is_supported(self) -> bool:
-        """Return True if the payload stands, or has been caught by some: then it hangs on their links as well."""
-        return self._cradles.number_held > 0 or self.touching_ground()
-
     def _update_cradles(self, thrusts: Sequence[float]) -> None:
         """Release and latch."""
         cradles, uavs = self._cradles, self._readings.uavs
         for i in cradles.due(thrusts, uavs):
             if cradles.held(i):
                 cradles.release(i)
-            elif self._is_low and self._is_supported:
+            # A payload that has been caught by some hangs on their links as well.
+            elif self._is_low and (cradles.number_held > 0 or self.touching_ground()):
                 cradles.latch(i, uavs[i][0], uavs[i][1])
 
 

@@ -3,12 +3,13 @@
 import numpy as np
 
 from idc_controller.arrays import Array, Indices
+from idc_controller.control.constraints.constraint import StateConstraint
 from idc_controller.control.settings import MpcSettings
 from idc_controller.model.linear import LinearModel
 from idc_controller.trajectory.flatness import FlatReference
 
 
-class LowestPayload:
+class LowestPayload(StateConstraint):
     """See :class:`~idc_controller.control.constraints.constraint.StateConstraint`."""
 
     def __init__(self, model: LinearModel, settings: MpcSettings) -> None:

@@ -2,14 +2,13 @@
 
 import numpy as np
 
-from idc_controller.arrays import Indices
+from idc_controller.control.constraints.constraint import StateConstraint
 from idc_controller.control.settings import MpcSettings
 from idc_controller.model.linear import LinearModel
-from idc_controller.trajectory.flatness import FlatReference
 
 
-class UavSeparation:
-    """See :class:`~idc_controller.control.constraints.constraint.StateConstraint`."""
+class UavSeparation(StateConstraint):
+    """It uses nothing of the limits: on the reference the links are parallel, and the UAVs as far apart as in hover."""
 
     def __init__(self, model: LinearModel, settings: MpcSettings) -> None:
         p = model.parameters
@@ -26,6 +25,3 @@ class UavSeparation:
                 bounds.append(max(distance - self.distance, 0.0))
         self.G, self.limits = np.array(rows), np.array(bounds)
         self.slack = np.zeros(len(rows), dtype=int)
-
-    def used(self, reference: FlatReference, stages: Indices) -> None:
-        """Return nothing: on the reference the links are parallel, and the UAVs as far apart as in hover."""

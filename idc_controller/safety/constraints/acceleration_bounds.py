@@ -3,7 +3,7 @@
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.safety.constraints.constraint import Penalty, PlanningStep
+from idc_controller.safety.constraints.constraint import Constraint, Penalty, PlanningStep
 from idc_controller.safety.settings import PlannerSettings
 
 _DIAGONAL = np.sqrt(0.5)
@@ -11,10 +11,8 @@ DIRECTIONS = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [_DIAGONAL, _DIAGONAL, 0
 """Unit vectors along which the acceleration is bounded (5, 3)."""
 
 
-class AccelerationBounds:
+class AccelerationBounds(Constraint):
     """Rows for every direction; the reference's own acceleration is always allowed."""
-
-    is_lazy = False
 
     def __init__(self, settings: PlannerSettings, penalty: Penalty) -> None:
         self.penalty = penalty
@@ -31,7 +29,3 @@ class AccelerationBounds:
         value = own + DIRECTIONS @ step.free[self._stages, 2].T
         limit = np.maximum(self._limits[:, None], np.abs(own) + self._spare)
         return self._G, np.stack([limit - value, limit + value], axis=1).ravel()
-
-    def slack_shares(self, obstacles: int) -> Array:
-        """Return S (1, m, 1): one slack for all."""
-        return np.ones((1, len(self._G), 1))

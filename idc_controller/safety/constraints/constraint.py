@@ -1,8 +1,10 @@
 """The interface of a constraint of the safety QP."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+
+import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.safety.separation import Separation
@@ -33,20 +35,22 @@ class Penalty:
     quadratic: float
 
 
-class Constraint(Protocol):
+class Constraint(ABC):
     """Rows G z <= h + S slack of the safety QP; z (3 knots,) is the deviation's snap at the knots, axis by axis."""
 
     penalty: Penalty
-    is_lazy: bool
+    is_lazy = False
     """Whether its rows are many, of which few bind."""
+    _G: Array
+    """Rows that do not change (m, 3 knots)."""
 
+    @abstractmethod
     def rows(self, step: PlanningStep) -> tuple[Array, Array]:
         """Return G (m, 3 knots) and h (m,)."""
-        ...
 
     def slack_shares(self, obstacles: int) -> Array:
         """Return the b blocks of S (b, m / b, s / b), which is else 0, with that number of obstacles.
 
-        S (m, s) is by what share of each slack a row may be exceeded.
+        S (m, s) is by what share of each slack a row may be exceeded; by default there is one slack for all rows.
         """
-        ...
+        return np.ones((1, len(self._G), 1))

@@ -18,14 +18,14 @@ import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.formation import Formation
-from idc_controller.safety.constraints.constraint import Penalty, PlanningStep
+from idc_controller.safety.constraints.constraint import Constraint, Penalty, PlanningStep
 from idc_controller.safety.planner_kernels import barrier_planes, barrier_rows, barrier_values
 from idc_controller.safety.separation import Separation
 from idc_controller.safety.settings import PlannerSettings
 from idc_controller.trajectory.integrator_chain import Chain
 
 
-class ExponentialBarrier:
+class ExponentialBarrier(Constraint):
     """Two sets of rows an obstacle, payload box and rotor discs, and two slacks."""
 
     is_lazy = True

@@ -4,14 +4,12 @@ import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.formation import Formation
-from idc_controller.safety.constraints.constraint import Penalty, PlanningStep
+from idc_controller.safety.constraints.constraint import Constraint, Penalty, PlanningStep
 from idc_controller.safety.settings import PlannerSettings
 
 
-class LowestAltitude:
+class LowestAltitude(Constraint):
     """Rows on the height of the payload's centre; the reference's own height is always allowed."""
-
-    is_lazy = False
 
     def __init__(self, formation: Formation, settings: PlannerSettings, penalty: Penalty) -> None:
         self.penalty = penalty
@@ -26,7 +24,3 @@ class LowestAltitude:
         """Return G (m, 3 knots) and h (m,) (m)."""
         z = step.reference[0, self._stages, 2]
         return self._G, np.maximum(self.lowest, z) - z - step.free[self._stages, 0, 2]
-
-    def slack_shares(self, obstacles: int) -> Array:
-        """Return S (1, m, 1): one slack for all."""
-        return np.ones((1, len(self._G), 1))

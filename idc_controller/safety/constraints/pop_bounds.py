@@ -8,14 +8,12 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from idc_controller.arrays import Array
-from idc_controller.safety.constraints.constraint import Penalty, PlanningStep
+from idc_controller.safety.constraints.constraint import Constraint, Penalty, PlanningStep
 from idc_controller.safety.settings import PlannerSettings
 
 
-class PopBounds:
+class PopBounds(Constraint):
     """Rows for every knot and axis, from the crackle in force on; the reference's own pop is always allowed."""
-
-    is_lazy = False
 
     def __init__(self, settings: PlannerSettings, penalty: Penalty) -> None:
         self.penalty = penalty
