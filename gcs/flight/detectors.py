@@ -250,10 +250,10 @@ def _range_sensors(step: MonitorStep) -> None:
         if not link.status.obstacle_sensing_valid:
             step.raise_alarm(step.names[i], MonitorAlarm.RANGE_SENSOR_FAILED)
     sensors = step.flight.system.obstacle_map.placement.range_sensors
-    for i in sensors.silent:
+    for i in sorted(sensors.silent):
         if step.links[i].status.obstacle_sensing_valid:
             step.raise_alarm(step.names[i], MonitorAlarm.RANGE_SENSOR_SILENT)
-    for i in sensors.displaced:
+    for i in sorted(sensors.displaced):
         step.raise_alarm(step.names[i], MonitorAlarm.RANGE_SENSOR_DISPLACED)
 
 

@@ -91,8 +91,10 @@ class RangeSensors:
         self._invalid: dict[int, float] = {}
         self._failed: dict[int, float] = {}
         self._heard: dict[int, float] = {}
-        self._silent: dict[int, float] = {}
-        self._displaced: dict[int, float] = {}
+        self.silent: dict[int, float] = {}
+        """Vehicles whose sensor sends no scans, since when (s)."""
+        self.displaced: dict[int, float] = {}
+        """Vehicles whose returns lie beside the rays of their sensor, since when (s)."""
         self._points: dict[int, set[bytes]] = {}
 
     def set_failed(self, uavs: Set[int], time: float) -> None:
@@ -102,14 +104,9 @@ class RangeSensors:
     def set_displaced(self, uav: int, is_displaced: bool, time: float) -> None:
         """Set whether the returns of a vehicle lie beside the rays of its sensor."""
         if not is_displaced:
-            self._displaced.pop(uav, None)
+            self.displaced.pop(uav, None)
         else:
-            self._displaced.setdefault(uav, time)
-
-    @property
-    def displaced(self) -> frozenset[int]:
-        """Vehicles whose returns lie beside the rays of their sensor."""
-        return frozenset(self._displaced)
+            self.displaced.setdefault(uav, time)
 
     def add_scan(self, uav: int, time: float) -> None:
         """Note that telemetry of a scan made at ``time`` has come."""
@@ -124,12 +121,7 @@ class RangeSensors:
         silent = {
             uav for uav in poses.uavs if self._heard and poses.has_since(uav, self._heard.get(uav, -math.inf), count)
         }
-        self._silent = {uav: self._silent.get(uav, time) for uav in silent}
-
-    @property
-    def silent(self) -> frozenset[int]:
-        """Vehicles whose sensor sends no scans."""
-        return frozenset(self._silent)
+        self.silent = {uav: self.silent.get(uav, time) for uav in silent}
 
     def add_invalid(self, uav: int, time: float) -> None:
         """Note an impossible detection of a vehicle."""
@@ -155,7 +147,7 @@ class RangeSensors:
         s = self._settings
 
         def is_invalid(uav: int) -> bool:
-            since = min(of.get(uav, math.inf) for of in (self._failed, self._silent, self._displaced))
+            since = min(of.get(uav, math.inf) for of in (self._failed, self.silent, self.displaced))
             if now - since >= patience:
                 return True
             invalid = self._invalid.get(uav, -math.inf)

@@ -344,7 +344,7 @@ def test_scans_of_returns_beside_the_rays_are_discarded_once_the_sensor_is_displ
         placing.end(ScanEnd(stamp, 10.0, True), 0, time, time)
         is_displaced = 0.1 * k >= RAY_OFFSET_DURATION - 1e-9
         assert len(placing.scans(time)) == (not is_displaced)
-        assert placing.range_sensors.displaced == (frozenset({0}) if is_displaced else frozenset())
+        assert set(placing.range_sensors.displaced) == ({0} if is_displaced else set())
     assert placing.discarded > 0 and placing.range_sensors.valid((0,), 2.0) == ()
 
 
