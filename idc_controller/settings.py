@@ -28,25 +28,16 @@ class Setting:
     le: float | None = None
 
 
-def setting(
-    default: Any,
-    unit: str,
-    meaning: str,
-    *,
-    gt: float | None = None,
-    ge: float | None = None,
-    lt: float | None = None,
-    le: float | None = None,
-) -> Any:
+def setting(default: Any, unit: str, meaning: str, **bounds: float) -> Any:
     """Declare a field of a settings dataclass.
 
     Args:
         default: the value of the default system.
         unit: its unit, empty for a pure number.
         meaning: what it decides, and where the default comes from, in one sentence.
-        gt, ge, lt, le: the bounds that a system file is held to.
+        bounds: ``gt``, ``ge``, ``lt``, ``le``, that a system file is held to.
     """
-    return field(default=default, metadata={METADATA_KEY: Setting(unit, meaning, gt, ge, lt, le)})
+    return field(default=default, metadata={METADATA_KEY: Setting(unit, meaning, **bounds)})
 
 
 def derived(default: Any) -> Any:

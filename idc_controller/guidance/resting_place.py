@@ -68,13 +68,13 @@ class RestingPlace:
     def _chosen(self, obstacles: Sequence[PredictedObstacle], state: Array, usual_duration: float) -> int:
         """Return the index of the stop chosen."""
         least, choices = self.settings.clearance, self._choices
-        near = _Near(obstacles, self.settings.growth_max)
+        bodies = Bodies([obstacle.shape for obstacle in obstacles])
         for known in (_USUAL, self._last) if self._last != _USUAL else (_USUAL,):
-            if self._clearances(near, state, usual_duration, np.array([known]))[0] >= least:
+            if self._clearances(obstacles, bodies, state, usual_duration, np.array([known]))[0] >= least:
                 return known
         # Of equally good ones the last that was chosen, unless it is the usual one.
         order = np.array([_USUAL, self._last, *range(1, len(choices.stops))])
-        clearances = self._clearances(near, state, usual_duration, order)
+        clearances = self._clearances(obstacles, bodies, state, usual_duration, order)
         return int(order[np.argmax(np.minimum(clearances, least) - choices.costs[order])])
 
     def _farthest(self, state: Array, usual_duration: float) -> float:
@@ -86,19 +86,34 @@ class RestingPlace:
         length = duration / 2.0 * speed + duration**2 / 12.0 * acceleration + max(s.aside, default=0.0)
         return length + self._radius + s.clearance + s.growth_max + _ROUNDING
 
-    def _clearances(self, near: _Near, state: Array, usual_duration: float, which: Indices) -> Array:
+    def _clearances(
+        self, obstacles: Sequence[PredictedObstacle], bodies: Bodies, state: Array, usual_duration: float,
+        which: Indices,
+    ) -> Array:  # fmt: skip
         """Return the least distance (m) of the formation's upright hull on its path to rest, and down from there.
 
         For the choices of the indices ``which`` (C,); those beyond the clearance that is asked for are not
-        distinguished. Minus infinity for those that end outside the area.
+        distinguished. Minus infinity for those that end outside the area. ``bodies``: of the ``obstacles``.
         """
         durations = self._choices.shares[which] * usual_duration
         control = control_points(state[None], durations, self._choices.asides[which])
         limit = self._radius + self.settings.clearance + _ROUNDING
-        least = near.least_distances(control, durations, self._elapsed, self._axis, limit)
+        centres = np.array([obstacle.positions for obstacle in obstacles])  # (O, K, 3)
+        growth = np.minimum(np.array([obstacle.growth for obstacle in obstacles]), self.settings.growth_max)  # (O, K)
+        reach = bodies.reach
+        if bodies.others:
+            reach = reach.copy()
+            reach[[i for i, _ in bodies.others]] = -np.inf  # never near: the kernel passes them over
+        least = least_distances(
+            control, durations, self._elapsed, self._axis, _STEP, bodies.rows, reach, centres, growth, limit
+        )
+        for i, shape in bodies.others:
+            for c, (points, duration) in enumerate(zip(control, durations, strict=True)):
+                places = BPoly(points[:, None], [0.0, duration])(np.minimum(self._elapsed, duration))
+                least[c] = least_distance(shape, places, self._axis, centres[i], growth[i], least[c])
         if self._area is not None:
             least[~self._area.contains(control[:, -1])] = -math.inf
-        return least - self._radius
+        return np.asarray(least - self._radius)
 
 
 class _Choices:
@@ -122,30 +137,6 @@ def _deflected(usual: Braking, s: RestingPlaceSettings) -> list[Braking]:
             offset = (aside * float(np.cos(bearing)), aside * float(np.sin(bearing)), 0.0)
             choices.append(usual._replace(aside=offset))
     return choices
-
-
-class _Near:
-    """Distances to obstacles over the moments at which they are predicted."""
-
-    def __init__(self, obstacles: Sequence[PredictedObstacle], growth_max: float) -> None:
-        self._bodies = Bodies([obstacle.shape for obstacle in obstacles])
-        self._centres = np.array([obstacle.positions for obstacle in obstacles])  # (O, K, 3)
-        self._growth = np.minimum(np.array([obstacle.growth for obstacle in obstacles]), growth_max)  # (O, K)
-
-    def least_distances(self, control: Array, durations: Array, elapsed: Array, axis: Array, limit: float) -> Array:
-        """See :func:`~idc_controller.guidance.resting_place_kernels.least_distances`."""
-        others, reach = self._bodies.others, self._bodies.reach
-        if others:
-            reach = reach.copy()
-            reach[[i for i, _ in others]] = -np.inf  # never near: the kernel passes them over
-        least = least_distances(
-            control, durations, elapsed, axis, _STEP, self._bodies.rows, reach, self._centres, self._growth, limit
-        )
-        for i, shape in others:
-            for c, (points, duration) in enumerate(zip(control, durations, strict=True)):
-                places = BPoly(points[:, None], [0.0, duration])(np.minimum(elapsed, duration))
-                least[c] = least_distance(shape, places, axis, self._centres[i], self._growth[i], least[c])
-        return least
 
 
 def least_distance(shape: Shape, places: Array, axis: Array, centres: Array, growth: Array, limit: float) -> float:

@@ -1,7 +1,7 @@
 """The trajectory that the safety filter returns: plans one after the other, each a deviation from its reference."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,18 +13,12 @@ from idc_controller.trajectory.trajectory_kernels import deflect, progress
 _NO_STATES = np.zeros((0, 5, 3))
 
 
-@dataclass(frozen=True, eq=False)
-class Piece:
+class Piece(NamedTuple):
     """One plan, from the reference's start on."""
 
     reference: ScaledReference
     deviation: Array | None
     """States of the deviation at the stages (K + 1, 5, 3), SI; None: none."""
-
-    @property
-    def start(self) -> float:
-        """Time at which the plan begins (s)."""
-        return self.reference.start
 
 
 class SafeTrajectory:
@@ -37,8 +31,7 @@ class SafeTrajectory:
         scalings: list[float] = []
         rows: list[int] = []
         deviations: list[Array] = []
-        for piece in pieces:
-            reference, deviation = piece.reference, piece.deviation
+        for reference, deviation in pieces:
             followed.append(numbers.setdefault(reference.trajectory, len(numbers)))
             scalings += reference.start, reference.progress, reference.rate
             rows.append(-1 if deviation is None else len(deviations) * (chain.stages + 1))

@@ -75,7 +75,7 @@ class AvoidanceFilter:
         deviation = None if negligible or plan is None else plan.deviation
         self._pieces.append(Piece(reference, deviation))
         self._plan, self._plan_time = (None if deviation is None else plan), time
-        while len(self._pieces) > 2 and self._pieces[1].start < time - self.filter_settings.memory:
+        while len(self._pieces) > 2 and self._pieces[1].reference.start < time - self.filter_settings.memory:
             self._pieces.popleft()
         self.report = SafetyReport(
             deviation=deviation,
