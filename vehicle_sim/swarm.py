@@ -162,7 +162,7 @@ class Swarm:
             self._obstacles.move((world.steps + 1) / world.physics_hz - self.take_off_time)
         thrusts, torques = self._wrenches
         k = world.steps % onboard
-        if self._faults.any_of_world:
+        if self._faults.of_world:
             world.step(thrusts[k], torques[k], *(self._faults.disturb(world, world.time) or ()))
         else:
             world.step(thrusts[k], torques[k])

@@ -40,13 +40,13 @@ def test_ground_hang_passes_heartbeats_only():
 
 def test_clock_faults_skew_step_and_overflow():
     skew = injected(fault("clock_skew", 1.0, 2.0, rate=0.01, vehicles=(1,)))
-    errors = [round(skew.clock(1, TAKE_OFF + t) - TAKE_OFF - t, 9) for t in (0.5, 1.0, 2.0, 3.0, 9.0)]
+    errors = [round(skew.clock_of(1)(TAKE_OFF + t) - TAKE_OFF - t, 9) for t in (0.5, 1.0, 2.0, 3.0, 9.0)]
     assert errors == [0, 0, 0.01, 0.02, 0.02]
-    assert skew.clock(2, 50.0) == 50.0
+    assert skew.clock_of(2)(50.0) == 50.0
     step = injected(fault("clock_step", 1.0, 2.0, step=-0.5))
-    assert [round(step.clock(1, TAKE_OFF + t) - TAKE_OFF - t, 9) for t in (0.5, 1.0, 2.9, 3.0)] == [0, -0.5, -0.5, 0]
+    assert [round(step.clock_of(1)(TAKE_OFF + t) - TAKE_OFF - t, 9) for t in (0.5, 1.0, 2.9, 3.0)] == [0, -0.5, -0.5, 0]
     wrap = injected(fault("stamp_wrap", 1.0, lead=2.0))
-    stamps = [round(wrap.clock(1, TAKE_OFF + t) * 1e3) & 0xFFFFFFFF for t in (0.9, 1.0, 2.99, 3.01)]
+    stamps = [round(wrap.clock_of(1)(TAKE_OFF + t) * 1e3) & 0xFFFFFFFF for t in (0.9, 1.0, 2.99, 3.01)]
     assert stamps == [3900, 2**32 - 2000, 2**32 - 10, 10]
 
 

@@ -9,9 +9,12 @@ import numpy as np
 
 from gcs.config import SystemConfig
 from gcs.faults import Direction
+from gcs.mavlink.address import Address
 from gcs.mavlink.frames import V2, spans
 from vehicle_sim.faults.active import TOLERANCE, ActiveFault, Moment
-from vehicle_sim.faults.disturbances import Datagram
+
+Datagram = tuple[bytes, Address]
+"""Bytes, and the address on the other side."""
 
 
 class Frame(NamedTuple):

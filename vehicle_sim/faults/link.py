@@ -2,8 +2,8 @@
 
 from gcs.faults import link as kinds
 from vehicle_sim.faults.active import TOLERANCE, Moment
-from vehicle_sim.faults.disturbances import Datagram
 from vehicle_sim.faults.impairment import (
+    Datagram,
     DatagramChange,
     GilbertElliottProcess,
     LinkImpairment,

@@ -78,16 +78,17 @@ CLOCKS = (kinds.ClockSkew, kinds.ClockStep, kinds.StampWrap)
 
 
 def clock_error(fault: ActiveFault, now: float) -> float:
-    """Return by how much a vehicle's clock is ahead (s), for a fault of the kinds :data:`CLOCKS`."""
-    settings = fault.settings
+    """Return by how much a vehicle's clock is ahead (s), for a fault of the kinds :data:`CLOCKS`, and count it."""
+    error, settings, moment = 0.0, fault.settings, fault.schedule.at(now)
     if isinstance(settings, kinds.ClockSkew):
-        return settings.rate * fault.schedule.active_time(now)
-    moment = fault.schedule.at(now)
-    if moment is None:
-        return 0.0
-    if isinstance(settings, kinds.StampWrap):
-        return _OVERFLOW - settings.lead - (now - moment.elapsed)
-    return float(settings.step)
+        error = settings.rate * fault.schedule.active_time(now)
+    elif moment is not None and isinstance(settings, kinds.StampWrap):
+        error = _OVERFLOW - settings.lead - (now - moment.elapsed)
+    elif moment is not None:
+        error = float(settings.step)
+    fault.seen += 1
+    fault.disturbed += error != 0.0
+    return error
 
 
 class StaleStamps(SampleImpairment, of=kinds.StaleStamps):

@@ -13,8 +13,10 @@ from gcs.config.tables import AirSettings
 from gcs.faults import world as kinds
 from idc_controller.rotations_float import Vector, into_body
 from vehicle_sim.faults.active import WORLD, ActiveFault
-from vehicle_sim.faults.disturbances import Forces
 from vehicle_sim.world.world import World
+
+Forces = tuple[Vector, Sequence[Vector]]
+"""Forces on the payload and on each UAV, at the centres of mass, north-east-down (N)."""
 
 
 class Wind:
