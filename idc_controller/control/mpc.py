@@ -17,7 +17,7 @@ from idc_controller.arrays import Array
 from idc_controller.control.constraints import state_constraints
 from idc_controller.control.constraints.input_limits import InputLimits
 from idc_controller.control.settings import MpcSettings, MpcWeights
-from idc_controller.errors import ParameterError, SolverError
+from idc_controller.errors import SolverError
 from idc_controller.model.linear import LinearModel, StateLayout
 from idc_controller.qp.parametric import ParametricQp
 from idc_controller.trajectory.flatness import FlatReference
@@ -61,8 +61,6 @@ class CondensedPrediction:
     """Time-invariant matrices of e_k+1 = A e_k + B v for moves v that are held over ``blocks`` of stages."""
 
     def __init__(self, A: Array, B: Array, blocks: Sequence[int]) -> None:
-        if not blocks or min(blocks) < 1:
-            raise ParameterError(f"move blocks {tuple(blocks)} must be one stage or longer")
         self.A, self.B, self.blocks = A, B, tuple(blocks)
         (n, m), stages, moves = B.shape, sum(blocks), len(blocks)
         move_of_stage = np.repeat(np.arange(moves), blocks)
@@ -95,13 +93,10 @@ class CondensedPrediction:
 class ModelPredictiveController:
     """Tracks a flat reference. Time-invariant matrices are built once; a step is a QP for the error."""
 
-    def __init__(self, model: LinearModel, settings: MpcSettings, blocks: Sequence[int] | None = None) -> None:
-        """Args: ``blocks`` of stages over which each move is held, in sum the horizon; None: those usual for it."""
+    def __init__(self, model: LinearModel, settings: MpcSettings) -> None:
         self.settings, self.layout = settings, model.layout
         self.horizon = N_p = settings.tuning.horizon
-        blocks = move_blocks(N_p) if blocks is None else blocks
-        if sum(blocks) != N_p:
-            raise ParameterError(f"move blocks {tuple(blocks)} do not sum to the horizon of {N_p} stages")
+        blocks = move_blocks(N_p)
         A, B, _ = model.discretised(round(settings.period * 1e6))
         self.prediction = prediction = CondensedPrediction(A, B, blocks)
         Q, R = state_weight(settings.tuning.weights, self.layout), input_weight(settings.tuning.weights, self.layout)

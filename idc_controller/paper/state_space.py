@@ -21,7 +21,7 @@ from idc_controller.arrays import Array
 from idc_controller.model.linear import LinearModel
 from idc_controller.model.nonlinear import Inputs, SystemState, accelerations, thrust_forces
 from idc_controller.parameters import SystemParameters
-from idc_controller.rotations import quaternion_from_euler
+from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 
 _PAYLOAD = ("r_0", "v_0", "Theta_0", "omega_0")
 _FULL = (("q", 3), ("Omega", 3), ("Theta", 3), ("omega", 3))
@@ -102,15 +102,13 @@ def derivative(parameters: SystemParameters, x: Array, u: Array) -> Array:
     Theta, omega = x[layout.of_uavs("Theta")], x[layout.of_uavs("omega")]
     quaternion_0 = quaternion_from_euler(*Theta_0)
     quaternion = np.array([quaternion_from_euler(*angles) for angles in Theta])
-    v_0 = x[layout.payload("v_0")]
-    state = SystemState(x[layout.payload("r_0")], np.zeros(3), quaternion_0, omega_0, q, Omega, quaternion, omega)
-    r_0_dot = state.R_0 @ v_0
-    state = SystemState(state.r_0, r_0_dot, quaternion_0, omega_0, q, Omega, quaternion, omega)
+    r_0_dot = rotation_from_quaternion(quaternion_0) @ x[layout.payload("v_0")]
+    state = SystemState(x[layout.payload("r_0")], r_0_dot, quaternion_0, omega_0, q, Omega, quaternion, omega)
     thrust, torque = u.reshape(N, 4)[:, 0], u.reshape(N, 4)[:, 1:]
     second = accelerations(parameters, state, Inputs(thrust_forces(quaternion, thrust), torque))
     result = np.empty(layout.size)
     result[layout.payload("r_0")] = r_0_dot
-    result[layout.payload("v_0")] = state.R_0.T @ second.r_0_ddot - np.cross(omega_0, v_0)
+    result[layout.payload("v_0")] = state.R_0.T @ second.r_0_ddot - np.cross(omega_0, x[layout.payload("v_0")])
     result[layout.payload("Theta_0")] = _euler_rates(Theta_0, omega_0)
     result[layout.payload("omega_0")] = second.omega_0_dot
     result[layout.of_uavs("q")] = np.cross(Omega - omega_0, q)

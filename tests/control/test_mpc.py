@@ -59,9 +59,10 @@ def next_error(mpc, error):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("vehicles", [3, 6])
-def test_mpc_without_active_constraints_is_the_linear_quadratic_regulator(vehicles):
+def test_mpc_without_active_constraints_is_the_linear_quadratic_regulator(monkeypatch, vehicles):
     model = LinearModel(CONFIG.with_vehicles(vehicles).parameters())
-    mpc = ModelPredictiveController(model, MpcSettings(), blocks=(1,) * 20)
+    monkeypatch.setattr("idc_controller.control.mpc.BLOCKS", (1,))  # each move is held over one stage
+    mpc = ModelPredictiveController(model, MpcSettings())
     A, B, weights = mpc.prediction.A, mpc.prediction.B, MpcTuning().weights
     Q, R = state_weight(weights, model.layout), input_weight(weights, model.layout)
     P = solve_discrete_are(A, B, Q, R)

@@ -1,5 +1,6 @@
 """Noise adaptation: sensors that are noisier, forces that change faster than assumed."""
 
+from copy import copy
 from itertools import count
 from types import SimpleNamespace
 
@@ -183,7 +184,7 @@ def test_rejections_that_persist_reset_the_covariance(share, gap, reset):
 
 def test_copy_learns_by_itself():
     adaptation = NoiseAdaptation(PAYLOAD_LIMIT)
-    other = adaptation.copy()
+    other = copy(adaptation)
     react(other, 0, 1, 2)
     assert (adaptation.measurement_scale, other.measurement_scale) == (1.0, 4.0)
 

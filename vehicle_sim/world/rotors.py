@@ -74,12 +74,14 @@ class Rotors:
         """
         if not (min(motor_time_constants) > 0.0 and physics_step > 0.0):
             raise SimulationError("motor_time_constant and physics_step must be positive")
+        decays = [math.exp(-physics_step / time_constant) for time_constant in motor_time_constants]
         self._motors = np.array(
             [
-                _motor(geometry, physics_step / time_constant)
-                for geometry, time_constant in zip(geometries, motor_time_constants, strict=True)
+                (decay, g.k_f, g.lever, g.torque_to_thrust, g.rotor_speed_max)
+                for decay, g in zip(decays, geometries, strict=True)
             ]
         )
+        """A row of each vehicle, for :func:`advance_rotors`."""
         n = len(self._motors)
         self.speeds = np.zeros((n, 4))
         self._thrusts, self._torques = np.zeros((steps, n)), np.zeros((steps, n, 3))
@@ -88,14 +90,3 @@ class Rotors:
         """Take the physics steps under the commanded speeds (N, 4) (rad/s), and return the wrenches that begin them."""
         advance_rotors(self._motors, commands, self.speeds, self._thrusts, self._torques)
         return self._thrusts.tolist(), self._torques.tolist()
-
-
-def _motor(geometry: RotorGeometry, ratio: float) -> tuple[float, ...]:
-    """Return the row of one vehicle for :func:`advance_rotors`; ``ratio`` of the physics step to the time constant."""
-    return (
-        math.exp(-ratio),
-        geometry.k_f,
-        geometry.lever,
-        geometry.torque_to_thrust,
-        geometry.rotor_speed_max,
-    )

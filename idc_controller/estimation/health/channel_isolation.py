@@ -7,6 +7,7 @@ wide, and a sensor that has been wrong all along would pass it, and outweigh all
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import copy
 
 import numpy as np
 
@@ -29,8 +30,7 @@ class ChannelIsolation:
 
     def copy(self) -> ChannelIsolation:
         """Return one with the same counts, which counts on by itself."""
-        other = ChannelIsolation.__new__(ChannelIsolation)
-        other._number_of_uavs, other._settings, other._gate = self._number_of_uavs, self._settings, self._gate
+        other = copy(self)
         other._rejections, other._acceptances = self._rejections.copy(), self._acceptances.copy()
         return other
 

@@ -80,12 +80,6 @@ class NoiseAdaptation:
         self._since_change = 0
         self._payload_rejections = 0
 
-    def copy(self) -> NoiseAdaptation:
-        """Return one that has learnt the same, and learns on by itself."""
-        other = NoiseAdaptation.__new__(NoiseAdaptation)
-        other.__dict__.update(self.__dict__)
-        return other
-
     @property
     def process_scale(self) -> float:
         """Scale of the densities of the forces' process noise."""
