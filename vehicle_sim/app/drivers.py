@@ -11,7 +11,6 @@ import select
 import socket
 import time
 from collections.abc import Callable, Iterator
-from typing import Self
 
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address
@@ -22,7 +21,7 @@ from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.errors import SimulationError
 
 
-class SwarmSockets:
+class SwarmSockets(contextlib.ExitStack):
     """Opens all sockets or, with a :class:`SimulationError`, none.
 
     Vehicle i listens on ``base_port + i - 1``, the clock on ``base_port - 1``; with ``base_port`` 0 each takes
@@ -37,10 +36,11 @@ class SwarmSockets:
             raise SimulationError(
                 f"--base-port {base_port}: needs the ports {first} .. {last}, and there are 1 .. 65535"
             )
+        super().__init__()
         with contextlib.ExitStack() as opened:
             self.clock = opened.enter_context(_bound(host, base_port and base_port - 1)) if with_clock else None
             self.vehicles = [opened.enter_context(_bound(host, base_port and base_port + i)) for i in range(vehicles)]
-            self._opened = opened.pop_all()
+            self.push(opened.pop_all())
         self._poll = select.poll()
         self._endpoint_at = {endpoint.fileno(): (i, endpoint) for i, endpoint in enumerate(self.vehicles, start=1)}
         for number in self._endpoint_at:
@@ -71,16 +71,6 @@ class SwarmSockets:
                 except OSError:  # the echo of a datagram to a closed port: no datagram of anybody
                     continue
                 yield vehicle, datagram, sender
-
-    def close(self) -> None:
-        """Close all; harmless when they are closed."""
-        self._opened.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
 
 def url(endpoint: socket.socket) -> str:
