@@ -26,7 +26,6 @@ from idc_controller.safety.constraints.acceleration_bounds import AccelerationBo
 from idc_controller.safety.constraints.constraint import Constraint, Penalty, PlanningStep
 from idc_controller.safety.constraints.exponential_barrier import ExponentialBarrier
 from idc_controller.safety.constraints.pop_bounds import PopBounds
-from idc_controller.safety.constraints.snap_bounds import SnapBounds
 from idc_controller.safety.separation import Separation
 from idc_controller.safety.settings import PlannerSettings
 
@@ -55,7 +54,6 @@ class Planner:
     def __init__(self, formation: Formation, settings: PlannerSettings, solver: QpSolver | None = None) -> None:
         self.formation, self.settings = formation, settings
         self.solver = solver or DaqpSolver()
-        self.snap_bounds = SnapBounds(settings)
         self.barrier = ExponentialBarrier(formation, settings)
         self.constraints = planner_constraints(self.barrier, settings)
         self.cost = _condensed_cost(settings)
@@ -119,7 +117,7 @@ class Planner:
         z, start = plan.knots.T.ravel(), plan.deviation[0]
         free, snap = self.settings.chain.response[0] @ start, reference[4, 0] + start[4]
         step = PlanningStep(reference, free, reference[2], (), snap, crackle)
-        lower, upper = self.snap_bounds.bounds(step)
+        lower, upper = snap_bounds(self.settings, step.reference)
         rows = (constraint.rows(step) for constraint in self.constraints)
         return bool(np.all(z <= upper + 1e-9) and np.all(z >= lower - 1e-9)) and all(
             bool(np.all(G @ z <= h + 1e-9)) for G, h in rows
@@ -135,7 +133,7 @@ class Planner:
             bounds.append(h)
             row += len(h)
         g = np.concatenate([self.cost.G @ start.T.ravel(), layout.linear])
-        least, most = self.snap_bounds.bounds(step)
+        least, most = snap_bounds(self.settings, step.reference)
         lower, upper = np.concatenate([least, layout.least]), np.concatenate([most, layout.most])
         return QuadraticProgram(layout.H, g, G, np.concatenate(bounds), lower, upper, lazy=layout.lazy)
 
@@ -235,6 +233,16 @@ def _condensed_cost(s: PlannerSettings) -> DeviationCost:
     return DeviationCost(*(block_diag(*blocks) for blocks in zip(*parts, strict=True)))
 
 
+def snap_bounds(settings: PlannerSettings, reference: Array) -> tuple[Array, Array]:
+    """Return the lower and the upper bound of z (3 knots,) (m/s4): hard, being of the QP's variables themselves.
+
+    The snap limit less the snap of the ``reference`` (5, K + 1, 3), which is always allowed.
+    """
+    snap = reference[4, np.cumsum(settings.blocks)]
+    limit = np.maximum(settings.snap_limit, np.abs(snap).max(axis=0) + settings.snap_spare)
+    return (-limit - snap).T.ravel(), (limit - snap).T.ravel()
+
+
 def terminal_weight(period: float, W: Array) -> Array:
     """Return the Riccati weight (4, 4) of the chain of position to jerk, driven by a held snap.
 
@@ -266,7 +274,7 @@ def give_way_time(settings: PlannerSettings, distance: float) -> float:
     step = PlanningStep(steady, np.zeros((count, 5, 3)), steady[2], (), np.zeros(3), np.zeros(3))
     rows = [bounds(settings, _HARD).rows(step) for bounds in (AccelerationBounds, PopBounds)]
     G, h = np.vstack([G for G, _ in rows]), np.concatenate([h for _, h in rows])
-    limits = np.column_stack(SnapBounds(settings).bounds(step))
+    limits = np.column_stack(snap_bounds(settings, steady))
 
     def farthest(k: int) -> float:
         aside = np.zeros((3, chain.knots))
