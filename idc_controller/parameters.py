@@ -1,4 +1,4 @@
-"""Physical parameters of the payload-UAV system (Table I of the paper), for any number of UAVs."""
+"""Physical parameters of the payload-UAV system (Table I of the paper), for any number of UAVs; the payload's hull."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Measurements of each UAV and of the payload: a pose and its motion, with their time of validity.
+"""Measurements of each UAV and of the payload: a pose and its motion, with their time of validity; and the estimate from them.
 
 A pose or a motion that was not measured, or may not be used, is all nan.
 """

@@ -1,4 +1,4 @@
-"""Clusters: returns of one vehicle's scan that are near to each other, in frames of all vehicles."""
+"""Clusters: returns of one vehicle's scan that are near to each other, and which obstacle each of them is of."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Closest points of hull and obstacle at each stage of a plan, and the plane that separates them there."""
+"""Closest points of hull and obstacle at each stage of a plan, and the plane that separates them there.
+
+Also of a formation at rest: the obstacle that is nearest to it, exactly.
+"""
 
 from __future__ import annotations
 

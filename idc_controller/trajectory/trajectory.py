@@ -1,4 +1,4 @@
-"""Reference trajectories: position to snap at many times at once, at rest before and after."""
+"""Reference trajectories: position to snap at many times at once, at rest before and after; time scaling."""
 
 from __future__ import annotations
 

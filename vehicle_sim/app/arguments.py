@@ -1,4 +1,4 @@
-"""The command line of ``vehicle-sim``: its options and what they may be."""
+"""The command line of ``vehicle-sim``: its options, what they may be, and the ports that follow."""
 
 from __future__ import annotations
 

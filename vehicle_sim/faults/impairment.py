@@ -1,4 +1,4 @@
-"""One fault on one direction of one vehicle's link: datagrams in, datagrams out, some delayed, some lost."""
+"""One fault on one vehicle: on one direction of its link, where some datagrams are delayed or lost, or on its samples."""
 
 import heapq
 from abc import ABC, abstractmethod

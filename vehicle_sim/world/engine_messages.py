@@ -1,4 +1,4 @@
-"""Output of the physics engine, below Python's streams, kept out of the program's output."""
+"""Output of the physics engine, below Python's streams, kept out of the program's output; and its window."""
 
 import contextlib
 import ctypes

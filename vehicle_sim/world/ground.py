@@ -1,4 +1,4 @@
-"""Ground and pad, and what touches what."""
+"""Ground and pad, the cradles in which UAVs are held at first, and what touches what."""
 
 import math
 from collections.abc import Sequence
