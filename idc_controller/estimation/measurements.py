@@ -1,4 +1,4 @@
-"""Measurements of each UAV and of the payload: a pose and its motion, with their time of validity; and the estimate from them.
+"""Measurements of each UAV and of the payload, poses and their motions with a time of validity; the estimate from them.
 
 A pose or a motion that was not measured, or may not be used, is all nan.
 """

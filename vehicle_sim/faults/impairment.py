@@ -1,4 +1,4 @@
-"""One fault on one vehicle: on one direction of its link, where some datagrams are delayed or lost, or on its samples."""
+"""One fault on one vehicle: on a direction of its link, where datagrams are delayed or lost, or on its samples."""
 
 import heapq
 from abc import ABC, abstractmethod
