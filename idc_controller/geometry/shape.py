@@ -175,9 +175,11 @@ class Shape(ABC):
     def collision(self) -> CollisionGeometry:
         """Return the shape for a physics engine, in its own frame."""
 
-    @abstractmethod
     def support(self, directions: Array) -> Array:
         """Largest ``direction . y`` over the body about its centre, for unit ``directions`` (..., 3) -> (...)."""
+        box, own = self.rounded_box, directions @ self.rotation
+        assert box is not None
+        return np.asarray(np.abs(own) @ np.array(box[:3]) + box.radial * np.hypot(own[..., 0], own[..., 1]) + box.ball)
 
     @property
     def rounded_box(self) -> RoundedBox | None:

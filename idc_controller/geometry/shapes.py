@@ -178,10 +178,6 @@ class Wall(_BoxBody, Shape):
         edges = " x ".join(f"{edge:.4g}" for edge in self.size)
         return f"{edges} m, heading {math.degrees(self.yaw):.1f} deg"
 
-    def support(self, directions: Array) -> Array:
-        """Largest ``direction . y`` over the body, for unit ``directions`` (..., 3) -> (...)."""
-        return np.asarray(np.abs(directions @ self.rotation) @ (np.array(self.size) / 2.0))
-
     @property
     def plan_view(self) -> PlanView:
         """A rectangle."""
@@ -232,11 +228,6 @@ class Pole(Shape):
         """Return the shape for a physics engine."""
         return CollisionGeometry("cylinder", {"radius": self.radius, "height": self.height})
 
-    def support(self, directions: Array) -> Array:
-        """Largest ``direction . y`` over the body, for unit ``directions`` (..., 3) -> (...)."""
-        lateral = np.hypot(directions[..., 0], directions[..., 1])
-        return np.asarray(self.radius * lateral + self.height / 2.0 * np.abs(directions[..., 2]))
-
     @property
     def rounded_box(self) -> RoundedBox:
         """The body: a vertical line rounded horizontally."""
@@ -260,10 +251,6 @@ class Sphere(Shape):
     def collision(self) -> CollisionGeometry:
         """Return the shape for a physics engine."""
         return CollisionGeometry("sphere", {"radius": self.radius})
-
-    def support(self, directions: Array) -> Array:
-        """Largest ``direction . y`` over the body, for unit ``directions`` (..., 3) -> (...)."""
-        return np.full(directions.shape[:-1], self.radius)
 
     @property
     def rounded_box(self) -> RoundedBox:
