@@ -56,11 +56,6 @@ class SystemState:
         return rotation_from_quaternion(self.quaternion_0)
 
     @property
-    def R(self) -> Array:
-        """Rotations UAV frames to world (N, 3, 3)."""
-        return rotation_from_quaternion(self.quaternion)
-
-    @property
     def v_0(self) -> Array:
         """The paper's v_0: velocity of the payload in the payload frame (3,) (m/s), eq:kinBeg."""
         return self.R_0.T @ self.r_0_dot

@@ -130,8 +130,6 @@ class PrintedFilter(NoObstacles):
         self.model, self.obstacles, self.margin = model, obstacles, margin
         self.formation = Formation(model.parameters)
         self._poles = poles
-        self.infeasible = 0
-        """Steps in which the rows could not be kept."""
 
     def correct(self, time: float, u: Array, estimate: Estimate) -> Array:
         """``u`` (3 N,) with the thrusts nearest to the tracker's that keep A_obs u <= b_obs."""
@@ -152,7 +150,6 @@ class PrintedFilter(NoObstacles):
         try:
             x = DaqpSolver().solve(problem).x
         except SolverError:
-            self.infeasible += 1
             return u
         corrected = u.copy()
         corrected[layout.f_setpoint] = np.clip(x, lower, upper)

@@ -181,7 +181,9 @@ def test_physics_engine_has_the_same_geometry(shape):
                 shape.geometry(), coal.Transform3s(shape.rotation, np.zeros(3)), coal.Sphere(0.2),
                 coal.Transform3s(np.eye(3), away), coal.DistanceRequest(), coal.DistanceResult(),
             )  # fmt: skip
-            points = pybullet.getClosestPoints(bodies.body("body"), bodies.body("probe"), 9.0, physicsClientId=client)
+            points = pybullet.getClosestPoints(
+                bodies._body("body").handle, bodies._body("probe").handle, 9.0, physicsClientId=client
+            )
             assert min(point[8] for point in points) == pytest.approx(expected, abs=3e-3)
     finally:
         pybullet.disconnect(client)

@@ -54,7 +54,7 @@ def run(world, seconds, thrusts, torques=None):
 def closest_distance(world, obstacle, within=100.0):
     """Distance (m) from an obstacle's surface to payload, links and discs; negative: overlap; inf: not within."""
     points = pybullet.getClosestPoints(
-        world._system.body, world.obstacles.body(obstacle), within, physicsClientId=world._client
+        world._system.body, world.obstacles._body(obstacle).handle, within, physicsClientId=world._client
     )
     return min((point[8] for point in points), default=math.inf)
 
@@ -65,7 +65,7 @@ def half_a_step_earlier(parameters, state, inputs, step):
     ``step`` in s. The generalised velocities are the payload's in the world and the joints' in the child's frame: by
     how much the parts' velocities change while those are constant is not taken back.
     """
-    half, R_0, R = 0.5 * step, state.R_0, state.R
+    half, R_0, R = 0.5 * step, state.R_0, rotation_from_quaternion(state.quaternion)
     second = accelerations(parameters, state, inputs)
     payload, links = R_0 @ state.omega_0, state.Omega @ R_0.T
     products = np.cross(payload, links) + np.cross(links, np.einsum("ijk,ik->ij", R, state.omega))
@@ -104,7 +104,7 @@ def place(world, state, inputs=None):
         link_quaternion = _product(payload_quaternion, link_in_payload)
         link_rates = state.Omega[i] - state.omega_0
         uav_quaternion = quaternion_to_engine(state.quaternion[i].tolist())
-        uav_rates = state.R[i] @ state.omega[i] - R_0 @ state.Omega[i]
+        uav_rates = rotation_from_quaternion(state.quaternion[i]) @ state.omega[i] - R_0 @ state.Omega[i]
         # A spherical joint's rates are those of the child against the parent, in the child's frame.
         pybullet.resetJointStateMultiDof(
             system.body, system.links[i], link_in_payload,

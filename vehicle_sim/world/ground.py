@@ -56,10 +56,6 @@ class Ground:
         self._lower_face = payload.below - _STANDING_DEPTH  # m below the centre
         self.standing_height = pad.thickness + payload.reach + 0.05
 
-    def is_near(self, payload: Pose) -> bool:
-        """Return True for a payload low enough to stand on pad or ground."""
-        return payload[0][2] <= self.standing_height
-
     def contacts(self, system: Multibody, payload: Pose) -> Contacts:
         """Return the contacts of the last step; ``payload`` is the pose of its principal axes."""
         points = pybullet.getContactPoints(physicsClientId=self._client)

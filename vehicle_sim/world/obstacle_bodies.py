@@ -55,10 +55,6 @@ class ObstacleBodies:
         """Return an obstacle at the current time."""
         return self._obstacles[name]
 
-    def body(self, name: str) -> int:
-        """Return the engine's handle. Raises :class:`SimulationError` for an unknown name."""
-        return self._body(name).handle
-
     def add(self, name: str, shape: Shape, position_in_world: Sequence[float]) -> None:
         """Add an obstacle, its centre (3,) in NED (m). Raises :class:`SimulationError`."""
         try:

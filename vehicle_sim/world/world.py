@@ -225,7 +225,7 @@ class World:
     @property
     def _is_low(self) -> bool:
         """Return True if the payload is low enough to stand on pad or ground."""
-        return self._ground.is_near(self._readings.payload)
+        return self._readings.payload[0][2] <= self._ground.standing_height
 
     def _update_cradles(self, thrusts: Sequence[float]) -> None:
         """Release and latch."""
