@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from braking_path import path_of
 from standing_obstacles import StandingObstacles
 
 from gcs.config import UnusableFile, read_system
@@ -84,7 +85,7 @@ def test_stop_without_setpoints_keeps_farther_off_with_a_larger_margin():
     distances = []
     for margin in (0.5, 1.2):
         choice = built(stack.resting_place, system(avoidance={"margin": margin}), obstacles)(0.0, STATE)
-        rest = choice.path(STATE)(choice.duration(STATE[1]))
+        rest = path_of(choice, STATE)(choice.duration(STATE[1]))
         distances.append(np.linalg.norm(rest - place))
     assert distances[1] > distances[0] + 0.3
 
