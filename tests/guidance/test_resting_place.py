@@ -13,7 +13,7 @@ from idc_controller.geometry.shapes import Box, Capsule, Mesh, MeshHull, Pole, S
 from idc_controller.guidance.resting_place import RestingPlace, least_distance
 from idc_controller.guidance.resting_place_kernels import least_distances
 from idc_controller.guidance.settings import RestingPlaceSettings
-from idc_controller.trajectory.stop_plan import Braking
+from idc_controller.trajectory.stop_plan import Braking, control_points
 
 PARAMETERS = read_system().parameters()
 #: Position, velocity, acceleration: 2 m/s north at 5 m.
@@ -56,7 +56,7 @@ def test_least_distance_of_kernel_agrees_with_plain_formula(shape, place, veloci
     centres, growth = np.array(place) + elapsed[:, None] * np.array(velocity), 0.05 * elapsed
     duration = USUAL.duration(state[1])
     least = least_distances(
-        USUAL.control_points(state[None], duration), np.array([duration]), elapsed, axis, 0.4,
+        control_points(state[None], np.array([duration]), np.array([USUAL.aside])), np.array([duration]), elapsed, axis, 0.4,
         shape.row[None], np.array([shape.reach]), centres[None], growth[None], 2.0,
     )  # fmt: skip
     places = path_of(USUAL, state)(np.minimum(elapsed, duration))
