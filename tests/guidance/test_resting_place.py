@@ -55,8 +55,9 @@ def test_least_distance_of_kernel_agrees_with_plain_formula(shape, place, veloci
     elapsed, axis = np.linspace(0.0, 10.0, 21), np.linspace(-1.0, 0.3, 9)
     centres, growth = np.array(place) + elapsed[:, None] * np.array(velocity), 0.05 * elapsed
     duration = USUAL.duration(state[1])
+    control = control_points(state[None], np.array([duration]), np.array([USUAL.aside]))
     least = least_distances(
-        control_points(state[None], np.array([duration]), np.array([USUAL.aside])), np.array([duration]), elapsed, axis, 0.4,
+        control, np.array([duration]), elapsed, axis, 0.4,
         shape.row[None], np.array([shape.reach]), centres[None], growth[None], 2.0,
     )  # fmt: skip
     places = path_of(USUAL, state)(np.minimum(elapsed, duration))
