@@ -11,7 +11,6 @@ from avoidance_scene import hull_of
 from nonlinear_motion import hover_inputs, hover_state
 from plain_flatness import flat_forces
 from scipy.spatial import Delaunay
-from world_runs import place
 
 from gcs.campaign.faults.base_mission import read_base
 from gcs.config import SystemConfig, UnusableFile, read_system
@@ -79,11 +78,6 @@ def test_mass_properties_of_the_l_are_those_of_its_two_boxes() -> None:
     assert payload.size is None and payload.inertia is None
 
 
-def test_centre_of_mass_of_the_l_is_a_tenth_of_a_metre_off_its_middle() -> None:
-    bounds = read_system(L_SYSTEM).payload.hull.bounds
-    assert np.linalg.norm(bounds.mean(axis=0)) == pytest.approx(0.1)
-
-
 @pytest.mark.parametrize("name", ["body.stl", "body.obj", "body.ply"])
 def test_payload_depends_neither_on_format_nor_on_origin_of_the_file(tmp_path: Path, name: str) -> None:
     mesh = wedge()
@@ -112,28 +106,6 @@ def test_hover_of_asymmetric_payload_is_an_equilibrium(tmp_path: Path) -> None:
         assert np.ptp(parameters.hover_thrust) > 0.5
         forces = flat_forces(parameters, np.zeros((5, 1, 3)), Load(parameters.m_0, np.zeros(3)))
         np.testing.assert_allclose(-forces.force[0, :, 2], parameters.hover_thrust, rtol=1e-12)
-
-
-def test_payload_in_the_engine_has_the_full_tensor_of_inertia(tmp_path: Path) -> None:
-    parameters = wedge_system(tmp_path).parameters()
-    assert np.abs(parameters.J_0[np.triu_indices(3, 1)]).min() > 1e-3
-    # Pulls (N) along tilted links turn the payload about its three axes.
-    tilts = np.array([[0.2, 0.0], [0.0, -0.2], [-0.2, 0.0], [0.0, 0.2]])
-    links = np.column_stack([tilts, np.sqrt(1.0 - np.sum(tilts**2, axis=1))])
-    for mass in (parameters.m_0, 1.2 * parameters.m_0):
-        now = parameters.with_payload_mass(mass)
-        for pulls in 5.0 * np.array([[1, -1, 1, -1], [1, 1, -1, -1], [1, -1, -1, 1]]):
-            state = replace(hover_state(parameters, (0.0, 0.0, -20.0)), q=links)
-            inputs = replace(hover_inputs(now), F=hover_inputs(now).F - pulls[:, None] * links)
-            rates = []
-            with World(parameters, physics_hz=1000) as world:
-                world.set_payload_mass(mass)
-                place(world, state)
-                for _ in range(2):
-                    world.step([0.0] * 4, [(0.0, 0.0, 0.0)] * 4, uav_forces=inputs.F.tolist())
-                    rates.append(world.state().payload_rates_in_payload)
-            expected = accelerations(now, state, inputs).omega_0_dot
-            np.testing.assert_allclose(np.diff(rates, axis=0)[0] * 1000.0, expected, rtol=5e-4)
 
 
 def test_principal_axes_of_a_diagonal_tensor_are_the_axes_of_its_frame() -> None:

@@ -82,13 +82,6 @@ def test_truth_repeats_to_the_byte_with_same_seed_and_faults(tmp_path):
     assert not fault_notes(tmp_path / "a")
 
 
-def test_fault_that_never_began_is_on_record(tmp_path):
-    _, injector, swarm = lifted(fault("packet_loss", 1000.0, probability=1.0), fault("partition", 0.5), until=3.0)
-    record_faults(tmp_path, injector, swarm.time, IncompleteRecords())
-    (note,) = fault_notes(tmp_path)
-    assert "fault 1, packet_loss" in note and "never came" in note
-
-
 def test_nan_is_sent_in_floats_and_omitted_from_integer_messages():
     ground, *_ = lifted(
         fault("not_a_number", channel="position", vehicles=(2,)),

@@ -178,13 +178,6 @@ def test_speed_is_flown_up_to_the_largest_and_special_values_are_none(
     assert any("capped" in note for note in mission.notes) == (speed > 3.0)
 
 
-def test_delay_of_zero_is_accepted(tmp_path: Path) -> None:
-    assert (
-        shape(read(tmp_path, wpl(TAKE_OFF, row(93, 0), A, RETURN)))[0]
-        == shape(read(tmp_path, wpl(TAKE_OFF, A, RETURN)))[0]
-    )
-
-
 @pytest.mark.parametrize(
     ("frame", "altitude", "noted"),
     [

@@ -1,26 +1,18 @@
 """Capsules, tilted boxes and meshes in mission files, in the physics engine and in the records."""
 
 import math
-import subprocess
-import sys
-from pathlib import Path
 
-import coal
 import numpy as np
-import pybullet
 import pytest
 import trimesh
-from mission_files import MISSIONS, TOML, description_of, read, refusal
-from programs import ENVIRONMENT
+from mission_files import TOML, description_of, read, refusal
 
 from gcs.campaign.toml_text import mission_text
-from gcs.mission.model import Limits, Obstacle
-from gcs.record.clearance import Formation, ObstacleTrack
+from gcs.mission.model import Limits
 from gcs.record.obstacle_shapes import OBSTACLE_SHAPES, read_shape, write_shapes
 from gcs.record.reader import read_json
 from idc_controller.errors import ShapeError
 from idc_controller.geometry.shapes import Box, Capsule, Mesh, MeshHull, Sphere
-from vehicle_sim.world.obstacle_bodies import ObstacleBodies
 
 OBSTACLES = """
 [[obstacle]]
@@ -133,15 +125,6 @@ def test_unusable_mesh_is_refused_with_file_line_field_and_reason(tmp_path, make
     assert reason in reasons[0]
 
 
-@pytest.mark.slow
-def test_check_of_mission_with_unusable_mesh_exits_with_2(tmp_path):
-    (tmp_path / "mission.toml").write_text(TOML + MESH.format("rock.stl"))
-    command = [sys.executable, "-m", "gcs", "check", str(tmp_path / "mission.toml")]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, env=ENVIRONMENT)
-    assert done.returncode == 2
-    assert "obstacle[3].file: cannot read 'rock.stl'" in done.stderr
-
-
 def test_missing_unknown_and_wrong_keys_of_shapes_are_refused(tmp_path):
     for shape, line, reason in (
         ("capsule", "radius = 1.0", "length: missing key"),
@@ -164,29 +147,6 @@ SHAPES = [
     Capsule(0.3, 1.5, roll=0.4, pitch=-0.7, yaw=2.0), Box((0.5, 1.0, 2.0), roll=0.3, pitch=0.5, yaw=-1.0),
     Mesh(hull_of(wedge()), scale=0.6, roll=0.4, pitch=0.5, yaw=1.0),
 ]  # fmt: skip
-
-
-@pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.kind)
-def test_physics_engine_has_the_same_geometry(shape):
-    client = pybullet.connect(pybullet.DIRECT)
-    try:
-        bodies = ObstacleBodies(client)
-        bodies.add("probe", Sphere(0.2), (0.0, 0.0, -30.0))
-        bodies.add("body", shape, (9.0, 9.0, -9.0))
-        for direction in np.random.default_rng(8).normal(size=(12, 3)):
-            away = direction / np.linalg.norm(direction) * (shape.reach + 0.5)
-            bodies.move("body", (1.0, -2.0, -30.0))
-            bodies.move("probe", np.array([1.0, -2.0, -30.0]) + away)
-            expected = coal.distance(
-                shape.geometry(), coal.Transform3s(shape.rotation, np.zeros(3)), coal.Sphere(0.2),
-                coal.Transform3s(np.eye(3), away), coal.DistanceRequest(), coal.DistanceResult(),
-            )  # fmt: skip
-            points = pybullet.getClosestPoints(
-                bodies._body("body").handle, bodies._body("probe").handle, 9.0, physicsClientId=client
-            )
-            assert min(point[8] for point in points) == pytest.approx(expected, abs=3e-3)
-    finally:
-        pybullet.disconnect(client)
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.kind)
@@ -213,18 +173,3 @@ def test_columns_hold_the_bounding_box():
 def test_no_file_of_shapes_where_the_columns_suffice(tmp_path):
     write_shapes(tmp_path, {"ball": Sphere(1.0)})
     assert not (tmp_path / OBSTACLE_SHAPES).exists()
-
-
-def test_clearance_to_a_capsule_is_exact():
-    level = np.array([[1.0, 0.0, 0.0, 0.0]])
-    track = ObstacleTrack("drum", Capsule(0.4, 2.0, pitch=math.pi / 2), np.array([[0.0, 0.0, 3.0]]))
-    uavs = np.array([[[0.5, 0.5, -3.2], [0.5, -0.5, -3.2], [-0.5, -0.5, -3.2], [-0.5, 0.5, -3.2]]])
-    got = Formation(np.zeros((1, 3)), level, uavs, np.tile(level, (1, 4, 1)).reshape(1, 4, 4)).clearance([track])
-    assert got[0] == pytest.approx(3.0 - 0.4 - 0.25, abs=1e-5)
-
-
-def test_rock_of_the_missions_is_unknown(tmp_path: Path):
-    from gcs.mission.read import read_mission
-
-    [rock] = read_mission(MISSIONS / "unknown_rock.toml").obstacles
-    assert isinstance(rock, Obstacle) and rock.shape.kind == "mesh" and not rock.known

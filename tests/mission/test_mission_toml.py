@@ -108,11 +108,6 @@ def test_toml_names_a_missing_or_wrong_waypoint_file(tmp_path: Path) -> None:
     assert "mission.txt: line 4" in refusal(tmp_path, text, "mission.toml")[0]
 
 
-def test_point_that_is_not_a_number_is_refused_by_one_line(tmp_path: Path) -> None:
-    (line,) = refusal(tmp_path, POINTS.replace("[[1, 2, -3], [4, 5, -6]]", "[[nan, 2, -3]]"), "mission.toml")
-    assert line.endswith("line 5: reference.points[1][1]: must be a finite number, found NaN")
-
-
 def test_speed_of_toml_is_capped(tmp_path: Path) -> None:
     mission = read(tmp_path, POINTS.replace("speed = 2", "speed = 20"), "mission.toml")
     assert isinstance(mission.reference, Route) and mission.reference.speed == 3.0

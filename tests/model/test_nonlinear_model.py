@@ -1,10 +1,10 @@
-"""The nonlinear model against a second derivation, and against what mechanics conserves."""
+"""The nonlinear model against a second derivation."""
 
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from nonlinear_motion import energy, hover_inputs, hover_state, rk4_step, uav_positions, uav_velocities
+from nonlinear_motion import hover_inputs, hover_state
 from paper_system import system
 
 from idc_controller.model.nonlinear import Inputs, SystemState, accelerations, matrix_P, thrust_forces
@@ -123,78 +123,3 @@ def test_hover_thrust_along_the_rotor_axis_points_up():
     F = thrust_forces(hover_state(parameters).quaternion, parameters.hover_thrust)
     np.testing.assert_allclose(F, hover_inputs(parameters).F)
     assert np.all(F[:, 2] < 0)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("n", [pytest.param(3, marks=pytest.mark.long), 6])
-def test_energy_is_conserved_without_thrust(n):
-    rng = np.random.default_rng(10 + n)
-    parameters = make_parameters(n, rng=rng)
-    state = random_state(n, rng, rate=0.5)
-    inputs = Inputs(F=np.zeros((n, 3)), tau=np.zeros((n, 3)))
-    before = energy(parameters, state)
-    kinetic = []
-    for _ in range(500):
-        state = rk4_step(parameters, state, inputs, 0.004)
-        kinetic.append(np.sum(uav_velocities(parameters, state) ** 2))
-    assert max(kinetic) > 1.5 * min(kinetic)  # there was something to exchange
-    assert abs(energy(parameters, state) - before) < 4e-9 * abs(before)
-
-
-def test_work_of_the_forces_is_the_gain_in_energy():
-    rng = np.random.default_rng(5)
-    n = 4
-    parameters = make_parameters(n, rng=rng)
-    state = random_state(n, rng)
-    inputs = Inputs(
-        F=5 * rng.normal(size=(n, 3)), tau=rng.normal(size=(n, 3)), F_0=rng.normal(size=3), tau_0=rng.normal(size=3)
-    )
-    power = (
-        np.sum(inputs.F * uav_velocities(parameters, state))
-        + np.sum(inputs.tau * state.omega)
-        + inputs.F_0 @ state.r_0_dot
-        + inputs.tau_0 @ state.omega_0
-    )
-    h = 1e-4
-    ahead, behind = (energy(parameters, rk4_step(parameters, state, inputs, s * h)) for s in (1, -1))
-    assert (ahead - behind) / (2 * h) == pytest.approx(power, rel=1e-6)
-
-
-def test_uav_velocities_are_the_derivative_of_the_positions():
-    rng = np.random.default_rng(6)
-    parameters = make_parameters(5, rng=rng)
-    state = random_state(5, rng)
-    inputs = hover_inputs(parameters)
-    h = 1e-5
-    ahead, behind = (uav_positions(parameters, rk4_step(parameters, state, inputs, s * h)) for s in (1, -1))
-    np.testing.assert_allclose((ahead - behind) / (2 * h), uav_velocities(parameters, state), atol=1e-6)
-
-
-@pytest.mark.slow
-def test_rk4_step_is_of_fourth_order_and_stays_on_the_manifold():
-    rng = np.random.default_rng(7)
-    parameters = make_parameters(4, rng=rng)
-    start = random_state(4, rng)
-
-    def forced(steps):
-        dt, state = 0.4 / steps, start
-        for k in range(steps):
-
-            def law(tau, s, k=k, dt=dt):
-                swing = np.sin(3 * (k * dt + tau))
-                return Inputs(F=thrust_forces(s.quaternion, np.full(4, 14 + swing)), tau=0.05 * swing * np.ones((4, 3)))
-
-            state = rk4_step(parameters, state, law, dt)
-        return state
-
-    states = [forced(steps) for steps in (20, 40, 80, 320)]
-    errors = [
-        max(np.abs(getattr(s, f.name) - getattr(states[-1], f.name)).max() for f in fields(SystemState))
-        for s in states[:-1]
-    ]
-    assert errors[0] / errors[1] > 10
-    assert errors[1] / errors[2] > 10
-    final = states[0]
-    np.testing.assert_allclose(np.linalg.norm(final.q, axis=1), 1.0, atol=1e-14)
-    np.testing.assert_allclose(np.linalg.norm(final.quaternion, axis=1), 1.0, atol=1e-14)
-    np.testing.assert_allclose(np.sum(final.q * final.Omega, axis=1), 0.0, atol=1e-12)

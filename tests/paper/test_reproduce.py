@@ -129,22 +129,6 @@ def test_command_fills_a_folder(tmp_path, monkeypatch, capsys):
     assert np.array([row[1:] for row in rows[1:]], dtype=float)[0, 3] == pytest.approx(0.05)
 
 
-def test_folder_that_is_not_empty_is_refused(tmp_path, capsys):
-    (tmp_path / "kept").write_text("mine", encoding="utf-8")
-    assert main(["reproduce", "--quick", "--out", str(tmp_path)]) == 2
-    assert capsys.readouterr().err.strip() == f"{tmp_path}: the folder is not empty: name another with --out"
-    assert [path.name for path in tmp_path.iterdir()] == ["kept"]
-    assert main(["reproduce", "--quick", "--out", str(tmp_path / "kept")]) == 2
-    assert "is a file" in capsys.readouterr().err
-
-
-def test_missing_missions_are_refused_before_start(tmp_path, capsys):
-    out = tmp_path / "out"
-    assert main(["reproduce", "--missions", str(tmp_path), "--out", str(out)]) == 2
-    assert "pole_course.toml" in capsys.readouterr().err
-    assert not out.exists()
-
-
 def test_simulations_repeat():
     case = replace(plan(quick=True).cases["noise", "printed_0.008_1"], duration=1.0)
     first, second = simulate(case), simulate(case)

@@ -3,10 +3,9 @@
 from pathlib import Path
 
 import pytest
-from recorded_run import BALL, CORNERS, LEVEL, REST, world_state, write_truth
+from recorded_run import CORNERS, LEVEL, REST, world_state
 from truth_rows import write_state
 
-from gcs.errors import UnusableInput
 from gcs.record.tables import MODE_COLUMNS
 from vehicle_sim.world.truth_log import TruthLog
 from vehicle_sim.world.world_state import UavState, WorldState
@@ -50,13 +49,6 @@ def test_closed_log_holds_no_file_and_takes_no_more_rows(tmp_path: Path) -> None
     assert before[0].count(b"\n") == before[1].count(b"\n") == 2
 
 
-def test_equal_states_give_equal_bytes(tmp_path) -> None:
-    for name in ("a", "b"):
-        write_truth(tmp_path / name, standing=[BALL])
-    for name in ("truth.csv", "obstacles.csv"):
-        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
-
-
 def test_truth_columns_are_in_order_of_the_contract(tmp_path) -> None:
     with TruthLog(tmp_path / "new", 2) as log:
         uavs = (
@@ -77,12 +69,6 @@ def test_truth_columns_are_in_order_of_the_contract(tmp_path) -> None:
     }  # fmt: skip
     assert row.endswith(",3")
     assert not (tmp_path / "new" / "obstacles.csv").exists()
-
-
-def test_truth_of_another_flight_is_not_overwritten(tmp_path) -> None:
-    write_truth(tmp_path, rows=1)
-    with pytest.raises(UnusableInput, match=r"truth\.csv: there is a record of another flight"):
-        TruthLog(tmp_path, 4)
 
 
 def test_state_of_another_number_of_uavs_is_an_error(tmp_path) -> None:

@@ -1,4 +1,4 @@
-"""Motion of the nonlinear model for the tests: hover, UAV positions and velocities, energy, integration in time."""
+"""Motion of the nonlinear model for the tests: hover, UAV positions and velocities, integration in time."""
 
 from collections.abc import Callable
 
@@ -39,19 +39,6 @@ def uav_velocities(parameters: SystemParameters, state: SystemState) -> Array:
     """Derivative of r_i: r_0_dot + R_0 (omega_0 x p_i - l_i Omega_i x q_i), in the world (N, 3) (m/s)."""
     in_payload = np.cross(state.omega_0, parameters.p) - parameters.l[:, None] * np.cross(state.Omega, state.q)
     return state.r_0_dot + in_payload @ state.R_0.T
-
-
-def energy(parameters: SystemParameters, state: SystemState) -> float:
-    """Kinetic and potential energy T + U of the system (J); the potential is zero at the world's z = 0."""
-    velocities = uav_velocities(parameters, state)
-    kinetic = (
-        parameters.m_0 * state.r_0_dot @ state.r_0_dot
-        + state.omega_0 @ parameters.J_0 @ state.omega_0
-        + np.sum(parameters.m[:, None] * velocities**2)
-        + np.einsum("ij,ijk,ik->", state.omega, parameters.J, state.omega)
-    ) / 2.0
-    heights = parameters.m_0 * state.r_0[2] + parameters.m @ uav_positions(parameters, state)[:, 2]
-    return float(kinetic - parameters.g * heights)
 
 
 def rk4_step(

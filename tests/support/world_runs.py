@@ -38,12 +38,6 @@ def angle_between(a, b):
     return np.degrees(2 * np.arctan2(np.linalg.norm(difference[1:]), abs(difference[0])))
 
 
-def link_lengths(parameters, state):
-    R_0 = rotation_from_quaternion(state.payload_quaternion)
-    attachments = state.payload_position_in_world + parameters.p @ R_0.T
-    return np.linalg.norm(uav_array(state, "position_in_world") - attachments, axis=1)
-
-
 def run(world, seconds, thrusts, torques=None):
     torques = torques or [(0.0, 0.0, 0.0)] * world.parameters.number_of_uavs
     for _ in range(round(seconds * world.physics_hz)):

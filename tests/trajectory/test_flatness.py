@@ -7,7 +7,6 @@ import pytest
 from flights import MISSIONS
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from nonlinear_motion import uav_positions
 from paper_system import UNSYMMETRIC
 from plain_flatness import Wave
 from plain_flatness import flat_reference as plain_reference
@@ -16,7 +15,6 @@ from gcs.config import read_system
 from idc_controller.model.drag import Air
 from idc_controller.model.linear import StateLayout
 from idc_controller.model.nonlinear import Inputs, SystemState, accelerations
-from idc_controller.rotations import hat
 from idc_controller.trajectory.flatness import Load, flat_reference
 
 CONFIG = read_system(MISSIONS / "system.toml")
@@ -80,26 +78,6 @@ def test_set_points_invert_the_attitude_loop_and_the_motor_lag():
     assert np.allclose(left, p.attitude_kp * flat.u[:, layout.n_setpoint], atol=0.02)
     f_dot = (after.x[:, layout.f] - before.x[:, layout.f]) / (2 * h)
     assert np.allclose(flat.x[:, layout.f] + p.motor_time_constant * f_dot, flat.u[:, layout.f_setpoint], atol=1e-3)
-
-
-def test_uav_positions_follow_from_links():
-    p = CONFIG.parameters()
-    flat = flat_reference(p, Wave(), TIMES, Load(p.m_0, np.zeros(3)))
-    for k in range(len(TIMES)):
-        state = SystemState(
-            flat.payload[0, k], np.zeros(3), np.array([1.0, 0, 0, 0]), np.zeros(3), np.tile(flat.links.q[k], (4, 1)),
-            np.zeros((4, 3)), np.tile([1.0, 0, 0, 0], (4, 1)), np.zeros((4, 3)),
-        )  # fmt: skip
-        expected = flat.payload[0, k] + p.p - p.l[:, None] * flat.links.q[k]
-        assert np.allclose(uav_positions(p, state), expected)
-
-
-def test_payload_has_zero_moment():
-    p = replace(CONFIG.parameters(), p=UNSYMMETRIC)
-    flat = flat_reference(p, Wave(), TIMES, Load(p.m_0, np.zeros(3)))
-    for q, tension in zip(flat.links.q, flat.links.tension, strict=True):
-        assert np.allclose(sum(T * hat(p_i) @ q for T, p_i in zip(tension, p.p, strict=True)), 0.0, atol=1e-9)
-        assert np.all(tension > 0.0)
 
 
 def vectors(limit):

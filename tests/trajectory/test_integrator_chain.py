@@ -65,29 +65,6 @@ def test_snap_is_piecewise_linear_through_knots(chain):
     np.testing.assert_allclose(first + others.sum(axis=1), 1.0)
 
 
-def test_evaluation_is_continuous_up_to_snap():
-    chain = DEFAULT
-    rng = np.random.default_rng(2)
-    states = chain.roll_out(rng.normal(size=(5, 3)), rng.normal(size=(chain.knots, 3)))
-    joints = chain.period * np.arange(1, chain.stages)
-    tiny = 1e-9
-    np.testing.assert_allclose(
-        evaluated_at(chain, states, joints - tiny), evaluated_at(chain, states, joints + tiny), rtol=0.0, atol=1e-6
-    )
-    np.testing.assert_allclose(evaluated_at(chain, states, joints), states[1:-1].transpose(1, 0, 2), atol=1e-9)
-
-
-def test_each_state_is_derivative_of_lower_one():
-    chain = DEFAULT
-    rng = np.random.default_rng(3)
-    states = chain.roll_out(rng.normal(size=(5, 3)), rng.normal(size=(chain.knots, 3)))
-    h = 1e-4
-    times = rng.uniform(2 * h, chain.stages * chain.period - 2 * h, 40)
-    times = times[np.abs(times / chain.period - np.round(times / chain.period)) > 2e-3]
-    slope = (evaluated_at(chain, states, times + h) - evaluated_at(chain, states, times - h)) / (2 * h)
-    np.testing.assert_allclose(slope[:4], evaluated_at(chain, states, times)[1:], atol=1e-5)
-
-
 def test_chain_has_constant_velocity_beyond_last_stage():
     chain = DEFAULT
     states = chain.roll_out(np.ones((5, 3)), np.zeros((chain.knots, 3)))

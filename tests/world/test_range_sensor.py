@@ -7,8 +7,6 @@ import numpy as np
 import pybullet
 import pytest
 from bodies import random_scene
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from gcs.config import RangeSensorConfig
 from idc_controller.geometry.obstacles import Bodies
@@ -17,7 +15,7 @@ from idc_controller.perception.range_sensors import RayPattern
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
 from vehicle_sim.world.range_sensor import RangeSensor, RayBodies
-from vehicle_sim.world.ray_cast_kernels import first_hits, measured_returns
+from vehicle_sim.world.ray_cast_kernels import first_hits
 from vehicle_sim.world.sensors import Measurement
 from vehicle_sim.world.world_state import flipped
 
@@ -134,21 +132,6 @@ def test_obstacle_hides_what_is_behind_it():
     alone, hidden = hits(directions, HIGH, [behind]), hits(directions, HIGH, [front, behind])
     assert np.isfinite(alone).sum() > 3
     assert hidden[np.isfinite(alone)].max() < 3.2
-
-
-@settings(deadline=None, derandomize=True, max_examples=30)
-@given(st.integers(0, 10_000))
-def test_kernels_agree_with_their_source(seed):
-    rng = np.random.default_rng(seed)
-    bodies = RayBodies.of(random_scene(seed, 6, high=-4.0))
-    pose = np.array([*rng.normal(size=2), -6.0, *quaternion_from_euler(*rng.normal(size=3))])
-    directions = random_directions(rng, 60)
-    found = first_hits(directions, pose, REACH, *bodies)
-    np.testing.assert_allclose(found, first_hits.py_func(directions, pose, REACH, *bodies), atol=1e-9)
-    arguments = found, rng.normal(0.0, 0.05, 60), rng.random(60), pose, np.array([0.05, 0.1, 0.3])
-    np.testing.assert_allclose(
-        measured_returns(directions, *arguments), measured_returns.py_func(directions, *arguments), atol=1e-12
-    )
 
 
 # Scans
@@ -289,10 +272,3 @@ def test_seed_and_vehicle_decide_the_noise_and_the_scene_does_not():
     sphere = [(Sphere(0.5), (-3.0, -2.0, -50.0))]
     for around, alone, together in zip(run(1, 1), run(1, 1, sphere), run(1, 1, AROUND + sphere), strict=True):
         assert sorted(around + alone) == sorted(together)
-
-
-def test_order_of_obstacles_does_not_matter():
-    scene = random_scene(3, 20)
-    np.testing.assert_array_equal(
-        scan_of(RangeSensorConfig(), scene).points, scan_of(RangeSensorConfig(), scene[::-1]).points
-    )

@@ -1,93 +1,22 @@
 """The PyBullet world against the constrained dynamics."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from mission_files import MISSIONS
-from nonlinear_motion import hover_inputs, hover_state, rk4_step, uav_positions, uav_velocities
+from nonlinear_motion import hover_state, rk4_step, uav_positions, uav_velocities
 from paper_system import system
-from world_runs import angle_between, half_a_step_earlier, link_lengths, place, run, uav_array, unequal
+from world_runs import angle_between, half_a_step_earlier, place, run, uav_array
 
 from gcs.config import read_system
-from idc_controller.model.nonlinear import Inputs, accelerations, thrust_forces
-from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
+from idc_controller.model.nonlinear import Inputs, thrust_forces
+from idc_controller.rotations import quaternion_from_euler
 from vehicle_sim.world.errors import UnsupportedWorld
 from vehicle_sim.world.multibody import MAX_VEHICLES
 from vehicle_sim.world.world import World
 
 L_PAYLOAD = read_system(MISSIONS / "l_payload.toml").parameters()
-
-
-def displaced(parameters, y, altitude=20.0):
-    """State at rest beside hover: y = position, small rotation vector, tilts of the links in the world (2 each)."""
-    tilt = y[6:].reshape(-1, 2)
-    q_world = np.column_stack([tilt, np.sqrt(1 - np.sum(tilt**2, axis=1))])
-    angle = np.linalg.norm(y[3:6])
-    axis = y[3:6] / angle if angle > 0 else np.zeros(3)
-    quaternion_0 = np.append(math.cos(angle / 2), math.sin(angle / 2) * axis)
-    hover = hover_state(parameters)
-    R_0 = rotation_from_quaternion(quaternion_0)
-    return replace(hover, r_0=y[:3] - [0, 0, altitude], quaternion_0=quaternion_0, q=q_world @ R_0)
-
-
-def displacement(parameters, state, altitude=20.0):
-    """The y of :func:`displaced`, of a world's state."""
-    w, *xyz = state.payload_quaternion
-    R_0 = rotation_from_quaternion(state.payload_quaternion)
-    link = state.payload_position_in_world + parameters.p @ R_0.T - uav_array(state, "position_in_world")
-    tilt = (link / parameters.l[:, None])[:, :2]
-    position = np.add(state.payload_position_in_world, [0, 0, altitude])
-    return np.concatenate([position, 2 * np.array(xyz) / w, tilt.ravel()])
-
-
-def hover_modes(parameters):
-    """Frequencies (rad/s), shapes and left eigenvectors of the oscillations about hover, by finite differences."""
-    size, h = 6 + 2 * parameters.number_of_uavs, 1e-6
-    inputs = hover_inputs(parameters)
-
-    def second_derivative(y):
-        state = displaced(parameters, y)
-        acceleration = accelerations(parameters, state, inputs)
-        q_ddot = np.cross(acceleration.Omega_dot, state.q) @ state.R_0.T  # at rest, in the world
-        return np.concatenate([acceleration.r_0_ddot, acceleration.omega_0_dot, q_ddot[:, :2].ravel()])
-
-    columns = [(second_derivative(h * e) - second_derivative(-h * e)) / (2 * h) for e in np.eye(size)]
-    values, shapes = np.linalg.eig(-np.array(columns).T)
-    np.testing.assert_allclose(values.imag, 0.0, atol=1e-6)
-    left = np.linalg.pinv(shapes)
-    moving = values.real > 0.1
-    return np.sqrt(values.real[moving]), shapes.real.T[moving], left.real[moving]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("n", [pytest.param(3, marks=pytest.mark.long), 6])
-def test_hover_modes(n):
-    parameters = system(n)
-    frequencies, shapes, left = hover_modes(parameters)
-    # Of 6 + 2N coordinates, position and yaw of the whole cost no energy.
-    assert len(frequencies) == 2 + 2 * n
-    lift = [(0.0, 0.0, -float(f)) for f in parameters.hover_thrust]
-    zeros, no_torque = [0.0] * n, [(0.0, 0.0, 0.0)] * n
-    chosen = np.unique(np.round(frequencies, 4), return_index=True)[1]
-    assert len(chosen) >= 3
-    with World(parameters, physics_hz=500) as world:
-        for mode in chosen:
-            omega, shape, projection = frequencies[mode], shapes[mode], left[mode]
-            place(world, displaced(parameters, 0.01 * shape / np.abs(shape).max()))
-            start = world.time
-            times, values = [], []
-            while world.time - start < 3.3 * 2 * np.pi / omega:
-                world.step(zeros, no_torque, uav_forces=lift)
-                times.append(world.time)
-                values.append(projection @ displacement(parameters, world.state()))
-            t, y = np.array(times), np.array(values)
-            before = np.flatnonzero(y[:-1] * y[1:] < 0)
-            crossings = t[before] - y[before] * (t[before + 1] - t[before]) / (y[before + 1] - y[before])
-            assert len(crossings) >= 6
-            measured = np.pi * (len(crossings) - 1) / (crossings[-1] - crossings[0])
-            assert measured == pytest.approx(omega, rel=1e-3)
 
 
 def forced(parameters, hz, seconds, law):
@@ -116,50 +45,6 @@ def forced(parameters, hz, seconds, law):
             for j in range(10):
                 state = rk4_step(parameters, state, inputs(0.1 * k + h * j), h)
             yield world.state(), state
-
-
-def world_force_law(parameters, seed=0):
-    """Everybody pushed to and fro sideways, each a little differently; thrust off, torques on."""
-    n = parameters.number_of_uavs
-    rng = np.random.default_rng(seed)
-    rate, sign = rng.uniform(1.0, 4.0, (n, 3)), rng.choice([-1.0, 1.0], (n, 3))
-    lift = np.outer(parameters.hover_thrust, [0, 0, -1.0])
-    together = np.outer(parameters.hover_thrust / parameters.hover_thrust.mean(), [1.2, 0.8, 0.3]) * 4 / n
-    apart = np.array([0.15, 0.15, 0.1])
-
-    def law(t):
-        F = lift + together * np.sin(np.array([2.0, 1.5, 2.5]) * t) + apart * sign * np.sin(rate * t)
-        return F, np.zeros(n), 0.005 * sign * np.sin(rate * t)
-
-    return law
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "parameters",
-    [*(pytest.param(each, marks=pytest.mark.long) for each in (system(3), system(6), unequal())), L_PAYLOAD],
-    ids=["3", "6", "unequal", "L"],
-)
-def test_forced_motion_agrees_with_an_independent_integration(parameters):
-    pairs = list(forced(parameters, 1000, 5.0, world_force_law(parameters)))
-    path = np.array([world.payload_position_in_world for world, _ in pairs])
-    assert np.linalg.norm(path[-1] - path[0]) > 1.0  # it really travelled
-    payload = [np.linalg.norm(world.payload_position_in_world - state.r_0) for world, state in pairs]
-    attitude = [angle_between(world.payload_quaternion, state.quaternion_0) for world, state in pairs]
-    uavs = [
-        np.linalg.norm(uav_array(world, "position_in_world") - uav_positions(parameters, state), axis=1).max()
-        for world, state in pairs
-    ]
-    uav_attitude = [
-        max(angle_between(a, b) for a, b in zip(uav_array(world, "quaternion"), state.quaternion, strict=True))
-        for world, state in pairs
-    ]
-    assert max(payload) < 1e-3
-    assert max(attitude) < 0.1
-    assert max(uavs) < 3e-3
-    assert max(uav_attitude) < 0.1
-    for world, _ in pairs:
-        np.testing.assert_allclose(link_lengths(parameters, world), parameters.l, atol=1e-9)
 
 
 def test_thrust_and_torque_act_in_the_uavs_frames():

@@ -32,9 +32,3 @@ def test_world_repeats_to_the_bit_with_reads_and_parallel_worlds():
         run(other, 0.1, [8.0] * 3)
         assert scenario(second, look=True) == one
         assert other.time == pytest.approx(0.1)
-
-
-def test_world_may_be_closed_twice():
-    world = World(system(4))
-    world.close()
-    world.close()
