@@ -227,7 +227,9 @@ def scheduler(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("cluster", [False, True], ids=["processes", "cluster"])
+@pytest.mark.parametrize(
+    "cluster", [pytest.param(False, marks=pytest.mark.long), True], ids=["processes", "cluster"]
+)  # processes of this machine, killed as well: tests/campaign/test_fault_campaign.py
 def test_results_are_the_same_bytes_whoever_flies_and_whatever_is_killed(alone, tmp_path, cluster, request):
     path, expected = alone
     out = tmp_path / "out"

@@ -140,11 +140,6 @@ def test_interrupted_command_exits_130(tmp_path, flown, monkeypatch, capsys):
     assert "interrupted with 6 flights to go" in capsys.readouterr().err
 
 
-def test_command_refuses_neither_campaign_nor_kinds(capsys):
-    assert main(["faults"]) == 2
-    assert "no campaign file" in capsys.readouterr().err
-
-
 REAL = """
 [campaign]
 name = "real"

@@ -79,20 +79,6 @@ def test_levels_share_a_folder_in_any_order(tmp_path, flown):
     assert flown == [(True, 1), (False, 1)]
 
 
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        ["--budget", "1m"],
-        ["--level", "both", "--budget", "30"],
-        ["--level", "both", "--budget", "xm"],
-        ["--level", "planning", "--controller", "mpc"],
-        ["--level", "half"],
-    ],
-)
-def test_command_refuses(wrong, tmp_path, flown):
-    assert command(tmp_path, *wrong) == 2 and not flown
-
-
 @pytest.mark.parametrize("flights", [1, 10, 59])
 def test_bound_without_a_contact_is_exact(flights):
     assert contact_bound(0, flights) == pytest.approx(1.0 - 0.05 ** (1.0 / flights))

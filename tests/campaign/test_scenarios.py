@@ -15,11 +15,9 @@ from gcs.campaign.flight import fly_plan
 from gcs.campaign.result import Flown, Result
 from gcs.campaign.scenarios import generator as scenarios
 from gcs.campaign.scenarios.generator import DEFAULT_KINDS, KINDS, generate
-from gcs.campaign.scenarios.judgement import COLUMNS
 from gcs.campaign.scenarios.moving import MOTIONS, displacement, motion_for, top_speed
 from gcs.campaign.scenarios.plans import Scenarios
 from gcs.campaign.scenarios.report import from_bad_end, report
-from gcs.campaign.tables import flight_columns
 from gcs.config.flight_settings import DEFAULTS
 from gcs.errors import UnusableInput
 from gcs.mission.model import Lissajous
@@ -29,7 +27,6 @@ from gcs.record.run_folder import open_run_folder
 from gcs.record.tables import truth_columns
 from idc_controller.geometry.free_space import BoundingCylinder
 from idc_controller.geometry.obstacles import PredictedObstacle
-from idc_controller.geometry.shapes import Sphere
 
 pytestmark = pytest.mark.slow
 
@@ -114,30 +111,6 @@ def test_harmonic_motion_is_fastest_when_the_payload_passes():
 
 
 # Schedule
-
-
-@pytest.mark.parametrize("name", ["figure_eight_spheres.toml", "pole_course.toml"])
-def test_mission_sphere_is_at_its_mean_position_when_payload_passes(name, missions):
-    """Each swinging sphere is at its mean position when the payload passes it, undisturbed."""
-    mission = read_mission(missions / name)
-    schedule = Schedule(mission)
-    [sphere] = [o for o in mission.obstacles if o.motion is not None]
-    assert isinstance(sphere.shape, Sphere) and not sphere.known
-    distance = np.linalg.norm(schedule.positions - np.array(sphere.position), axis=1)
-    near = [
-        i for i in range(1, len(distance) - 1)
-        if distance[i] < 0.1 and distance[i - 1] > distance[i] <= distance[i + 1]
-    ]  # fmt: skip
-    assert near
-    for i in near:
-        np.testing.assert_allclose(sphere.motion.mover()(schedule.times[i]), 0.0, atol=0.1)
-
-
-@pytest.fixture
-def missions():
-    from pathlib import Path
-
-    return Path(__file__).parents[2] / "missions"
 
 
 def test_arrival_is_final_entry_into_goal_radius():
@@ -259,34 +232,6 @@ def campaign_in(folder, **changes):
     return Campaign(scenarios, folder / "out")
 
 
-def test_campaign_flies_every_scenario_once(tmp_path, flown):
-    ended = []
-    campaign = flown_in(campaign_in(tmp_path), ended.append)
-    assert flown == [1, 2, 3, 4, 5, 6] and ended == campaign.results
-    names = sorted(path.name for path in (tmp_path / "out" / "missions").iterdir())
-    assert names == [f"{n:04d}-{kind}.toml" for n, kind in enumerate(["poles", "moving"] * 3, start=1)]
-    _, [table, timing, _] = campaign.generator.report(campaign.results, campaign.out)
-    lines = table.read_text().splitlines()
-    assert lines[0] == ",".join(flight_columns(COLUMNS)) and len(lines) == 7
-    assert timing.read_text().startswith("number,name,step_time_p50_ms,")
-    # Of those that passed only the results are kept.
-    assert [path.name for path in (tmp_path / "out" / "flights").iterdir()] == ["0004-moving"]
-
-
-def test_campaign_resumes_after_an_interrupt(tmp_path, flown):
-    def interrupted(result):
-        if result.number == 3:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        flown_in(campaign_in(tmp_path), interrupted)
-    again = campaign_in(tmp_path, count=8)
-    assert [r.number for r in again.results] == [1, 2, 3]
-    flown_in(again)
-    assert sorted(set(flown)) == list(range(1, 9)) and flown.count(1) == flown.count(3) == 1
-    assert len(again.results) == 8
-
-
 def test_what_has_changed_is_flown_again(tmp_path, flown, monkeypatch):
     flown_in(campaign_in(tmp_path))
     (tmp_path / "out" / "missions" / "0002-moving.toml").write_text("another")
@@ -339,11 +284,6 @@ def test_command_flies_and_reports(tmp_path, flown, capsys, pictures):
     assert any(text.startswith("limit ") for text in texts) and any(text.startswith("worst ") for text in texts)
     assert main(["courses", "--count", "4", "--kinds", "walls", "--out", out]) == 2
     assert "was begun with kinds" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("wrong", [["--count", "0"], ["--kinds", "lakes"], ["--jobs", "x"], ["--obstacle-speed", "0"]])
-def test_command_refuses_arguments_out_of_range(wrong):
-    assert main(["courses", *wrong]) == 2
 
 
 def test_distribution_counts_from_the_bad_end():

@@ -1,7 +1,5 @@
 """Scenarios of boxes, forests, rooms, overhangs, and of what stops and goes: ranges, free ends, and the way."""
 
-import math
-from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 
@@ -22,7 +20,6 @@ from gcs.campaign.scenarios.rooms import rooms
 from gcs.config import read_system
 from gcs.mission.motion import WaypointsMotion
 from gcs.mission.read import read_mission
-from gcs.planning.flight import PlanningFlight
 from gcs.planning.schedule import Schedule
 from idc_controller.geometry.free_space import FreeSpace
 from idc_controller.geometry.shapes import Pole, Sphere, Wall
@@ -46,14 +43,17 @@ def read(scenario, folder):
     return read_mission(path)
 
 
-@pytest.fixture
-def course(kind, number, tmp_path):
-    scenario = generated(21, number, kind)
+@pytest.fixture(params=SEEDS)
+def number(request):
+    return request.param
+
+
+@pytest.fixture(params=KINDS)
+def course(request, number, tmp_path):
+    scenario = generated(21, number, request.param)
     return scenario, read(scenario, tmp_path)
 
 
-@pytest.mark.parametrize("number", SEEDS)
-@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.slow
 def test_generated_course_is_a_mission_of_unknown_standing_obstacles(course):
     scenario, mission = course
@@ -64,8 +64,6 @@ def test_generated_course_is_a_mission_of_unknown_standing_obstacles(course):
     assert 1.0 <= mission.reference.speed <= 2.5
 
 
-@pytest.mark.parametrize("number", SEEDS)
-@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.slow
 def test_generated_course_leaves_pad_waypoints_and_goal_free_and_the_path_not(course):
     _, mission = course
@@ -78,8 +76,6 @@ def test_generated_course_leaves_pad_waypoints_and_goal_free_and_the_path_not(co
     assert FreeSpace(bodies, PASSAGES.formation, 0.0, 0.0, 100.0).clearance(schedule.positions).min() < 1.05
 
 
-@pytest.mark.parametrize("number", SEEDS)
-@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.slow
 def test_generated_course_has_a_way_or_none_as_it_says(course):
     scenario, mission = course
@@ -163,7 +159,6 @@ def test_rooms_enclose_start_and_goal_and_have_corridors_dead_ends_and_closed_do
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", SEEDS)
 def test_movers_stop_and_go_on_a_collision_course(number, tmp_path):
     mission = read(generate(21, number, "stop_and_go"), tmp_path)
     schedule = Schedule(mission)
@@ -254,31 +249,3 @@ def rooms_with(door):
         Obstacle(f"wall {i}", (*place, -9.0), Wall((*size, 18.0)), False)
         for i, (place, size) in enumerate(sizes.items())
     ]
-
-
-def test_heading_of_boxes_is_turned_all_round():
-    yaws = [o.shape.yaw for seed in range(20) for o in boxes(np.random.default_rng(seed), PASSAGES).obstacles]
-    assert np.ptp(np.array(yaws) % math.pi) > 2.5
-
-
-class NoScans:
-    """Range sensors of which nothing comes."""
-
-    def scan(self, time, motion_time, states):
-        return []
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("is_height", [pytest.param(False, marks=pytest.mark.long), True])
-def test_ground_that_knows_all_walls_breaks_off_with_the_true_gap(is_height, tmp_path):
-    """On the planning level, in the first rooms of a seed without a way."""
-    courses = (generated(31, number, "rooms") for number in range(1, 100))
-    scenario = next(
-        each for each in courses if each.passage.verdict == "impassable" and each.passage.gap.is_height == is_height
-    )
-    mission = read(scenario, tmp_path)
-    mission = replace(mission, obstacles=tuple(replace(obstacle, known=True) for obstacle in mission.obstacles))
-    flight = PlanningFlight(mission, Schedule(mission).start, NoScans())
-    while not (flight.reason or flight.ended):
-        flight.step()
-    assert names_the_gap(scenario.passage, flight.reason), flight.reason

@@ -6,10 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from gcs.app.cli import main
 from gcs.campaign.engine import Campaign
 from gcs.campaign.suites.plans import Suite, read_suite
-from gcs.campaign.suites.yaml_file import read_yaml
 from gcs.config import UnusableFile
 from gcs.mission.read import read_mission
 from idc_controller.geometry.shapes import Pole, Wall
@@ -218,13 +216,6 @@ def test_deeply_nested_file_is_refused_at_once(folder, opening):
     assert "nested more than 32 levels" in refused(test_file(folder, "a:\n " + opening * 20000))[0]
 
 
-def test_yaml_keys_know_their_lines(folder):
-    file = read_yaml(test_file(folder))
-    assert file.lines[("simulation", "obstacles", 0, "position", "x")] == 14
-    assert file.lines[("simulation", "obstacles", 1, "size", "r")] == 19
-    assert file.problem(("simulation", "nothing"), "no").endswith("line 5: simulation.nothing: no")
-
-
 # Lists in JSON lines
 
 
@@ -317,22 +308,3 @@ def test_plan_that_has_changed_makes_another_mission(folder):
     before = suite(test_file(folder))[0].text
     (folder / "tests" / "mission.plan").write_text(plan_text(item(1, 22, 0.0, 0.0, 9), item(2, 21, 0.0, 53.0, 0)))
     assert suite(test_file(folder))[0].text != before
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["--suite", "absent.yaml"], "absent.yaml: cannot be read"),
-        (["--suite", "bad.yaml"], "bad.yaml: line 1: robot.mission_file: missing key"),
-        (["--suite", "bad.yaml", "--count", "3"], "--count is for random scenarios, not for --suite"),
-        (["--suite", "bad.yaml", "--kinds", "boxes"], "--kinds is for random scenarios"),
-        (["--suite", "bad.yaml", "--obstacle-speed", "3"], "--obstacle-speed is for random scenarios"),
-        (["--speed", "2"], "--speed goes with --suite"),
-    ],
-)
-def test_command_refuses_unusable_input_and_starts_nothing(tmp_path, monkeypatch, capsys, arguments, message):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "bad.yaml").write_text("simulation: {speed: 1}\n")
-    assert main(["courses", *arguments]) == 2
-    assert message.replace("robot.", "drone.") in capsys.readouterr().err.replace("robot.", "drone.")
-    assert [path.name for path in tmp_path.iterdir()] == ["bad.yaml"]

@@ -53,10 +53,6 @@ def free_move(error):
     return 1e3 * output.delta_u
 
 
-def next_error(mpc, error):
-    return mpc.prediction.A @ error + mpc.prediction.B @ mpc.track(error, STAGES).delta_u
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("vehicles", [3, 6])
 def test_mpc_without_active_constraints_is_the_linear_quadratic_regulator(monkeypatch, vehicles):
@@ -108,30 +104,6 @@ def test_hard_input_limits_are_kept_whatever_the_error():
         assert np.all(np.abs(u[LAYOUT.n_setpoint]) <= np.tan(s.tuning.uav_tilt_limit) + 1e-5)
         assert np.all(u[LAYOUT.f_setpoint] <= 0.95 * p.thrust_max + 1e-4)
         assert np.all(u[LAYOUT.f_setpoint] >= s.thrust_min - 1e-4)
-
-
-def test_payload_tilt_limit_binds_before_it_is_reached():
-    # A rate that would carry the payload over the limit: with the limit it is stopped sooner than without.
-    loose = MpcSettings(tuning=MpcTuning(payload_tilt_limit_deg=80.0))
-    peaks = {}
-    for name, settings in (("limited", MpcSettings()), ("loose", loose)):
-        # New ones: a solver starts from its last solution.
-        mpc = ModelPredictiveController(MODEL, settings)
-        error = error_of(Theta=(np.radians(3.0), 0.0, 0.0), omega=(1.5, 0.0, 0.0))
-        peak = 0.0
-        for _ in range(40):
-            error = next_error(mpc, error)
-            peak = max(peak, error[LAYOUT.Theta][0])
-        peaks[name] = np.degrees(peak)
-    assert peaks["limited"] < peaks["loose"] - 0.1
-
-
-def test_ground_is_a_soft_limit():
-    stages = stages_at(0.3)
-    error = error_of(v_0=(0.0, 0.0, 0.8))  # sinking fast, 5 cm above the ground
-    output = DEFAULT.track(error, stages)
-    assert output.iterations > 0
-    assert np.sum(output.delta_u[LAYOUT.f_setpoint]) > np.sum(free_move(error)[LAYOUT.f_setpoint])
 
 
 @pytest.mark.parametrize(

@@ -1,15 +1,12 @@
 """Estimator in flight, against the truth: errors within their covariance."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from estimator_truth import known_to_the_world, true_state
-from flights import MISSIONS, InProcessFlight, check_within_limits, noiseless, short_figure
+from flights import MISSIONS, InProcessFlight, short_figure
 from scipy.stats import chi2
 
 from gcs.config import read_system
-from gcs.mission.read import read_mission
 from idc_controller.model.linear import LinearModel
 
 pytestmark = pytest.mark.slow
@@ -113,40 +110,6 @@ def test_estimate_is_within_nominal_errors(flown):
     assert rms["v_0"] < 0.006
     assert rms["Theta"] < np.radians(0.08)
     assert rms["s"] < 0.002
-
-
-@pytest.mark.long
-def test_tracking_error_and_covariance_without_noise(tmp_path):
-    mission = noiseless(read_mission(short_figure(tmp_path, duration=8.0)))
-    with Watched(mission, tmp_path / "run") as flight:
-        flight.fly(flight.watch)
-        summary = flight.summary()
-    check_within_limits(summary)
-    assert summary["position_rmse_m"]["total"] <= 0.02
-    pairs = flight.in_the_air()
-    known = known_to_the_world(LAYOUT)
-    # The covariance is not too small.
-    assert normalised_errors(pairs, known).mean() / len(known) < 1.0
-    assert normalised_errors(pairs, np.arange(12)).mean() / 12 < 1.0
-    errors = np.array([(estimate.x - truth)[LAYOUT.r_0] for estimate, truth in pairs])
-    assert np.sqrt(np.mean(errors**2)) < 0.001
-
-
-@pytest.mark.long  # the disturbance force takes the like in
-@pytest.mark.parametrize("factor", [0.9, 1.1])
-def test_figure_eight_is_flown_and_estimate_has_no_offset_with_ten_percent_payload_mass_error(tmp_path, factor):
-    mission = read_mission(short_figure(tmp_path, duration=8.0))
-    world = replace(mission.system, world=replace(mission.system.world, payload_mass_factor=factor))
-    with Watched(mission, tmp_path / "run", world=world) as flight:
-        flight.fly(flight.watch)
-        check_within_limits(flight.summary(), rmse=0.035)
-    last = [estimate for estimate, _ in flight.in_the_air()][-60:]
-    excess = np.mean([estimate.mass_excess + 0.0 for estimate in last])
-    force = np.mean([estimate.force for estimate in last], axis=0)
-    # Excess mass and a constant disturbance force down are hardly observable apart: their sum is the excess weight.
-    weight = excess * P.g + force[2]
-    assert weight == pytest.approx((factor - 1.0) * P.m_0 * P.g, abs=0.15)
-    assert np.abs(force[:2]).max() < 0.3
 
 
 @pytest.mark.parametrize(

@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from idc_controller.estimation.health.chi_squared import lower_quantile
 from idc_controller.estimation.health.innovation_monitor import Finding, InnovationMonitor
-from idc_controller.estimation.health.innovation_monitor_kernels import running_means
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from idc_controller.estimation.settings import InnovationMonitorSettings
 
@@ -112,28 +110,3 @@ def test_monitor_counts_replayed_moment_once():
     for k in range(2 * REJECTIONS):
         monitor.learn(0.1, KEYS[:1], SIZES[:1], np.zeros(6), [(PAYLOAD, Position)])
         assert monitor.findings(0.1 + 0.01 * k) == {}
-
-
-def test_compiled_running_means_equal_plain_ones():
-    rng, sizes, share = np.random.default_rng(6), np.array([6, 4, 3]), 0.04
-    gates = lower_quantile(GATE, np.arange(7))
-    mean, square, last = np.zeros((3, 6)), np.ones((3, 3)), np.full(3, -np.inf)
-    plain_mean, plain_square = mean.copy(), square.copy()
-    for k in range(40):
-        innovations = [rng.choice([1.0, 30.0, np.nan, np.inf], size, p=[0.7, 0.1, 0.1, 0.1]) * rng.standard_normal(size)
-                       for size in sizes]  # fmt: skip
-        new = running_means(
-            0.1 * (k - k % 2), np.arange(3), sizes, np.concatenate(innovations), gates, share, mean, square, last
-        )
-        assert new.tolist() == 3 * [k % 2 == 0]
-        for i, (size, innovation) in enumerate(zip(sizes, innovations, strict=True)):
-            if new[i]:
-                bounded = np.nan_to_num(np.clip(innovation, -np.sqrt(gates[size]), np.sqrt(gates[size])))
-                channels = np.split(bounded, [size // 2] if size > 3 else [size])
-                for part, rows in enumerate([bounded, *channels]):
-                    limited = min(rows @ rows, gates[len(channels[0]) if part else size]) / max(len(rows), 1)
-                    plain_square[i, part] += share * (limited - plain_square[i, part])
-                for half, rows in zip(np.split(plain_mean[i], 2), channels, strict=True):
-                    half[: len(rows)] += share * (rows - half[: len(rows)])
-    assert mean == pytest.approx(plain_mean, rel=1e-12, abs=1e-15)
-    assert square == pytest.approx(plain_square, rel=1e-12)

@@ -210,19 +210,6 @@ def test_flight_stays_within_limits_with_five_times_noise_on_every_channel(tmp_p
 
 @pytest.mark.slow
 @pytest.mark.long
-def test_flight_completes_in_gusty_wind(tmp_path):
-    wind = 'kind = "wind"\nvelocity = [2.0, 2.0, 0.0]\ngust = 0.6\nstart = 5.0'
-    with InProcessFlight(with_faults(tmp_path, wind), tmp_path / "run", seed=42) as flight:
-        flight.fly()
-        summary = flight.summary()
-    assert summary["completed"]
-    assert summary["contacts"] == 0
-    assert max(summary["payload_tilt_max_deg"].values()) <= 5.0
-    assert summary["uav_separation_min_m"] >= 0.75
-
-
-@pytest.mark.slow
-@pytest.mark.long
 def test_flight_stays_within_limits_with_a_third_of_datagrams_lost(tmp_path):
     mission = with_faults(tmp_path, 'kind = "packet_loss"\nprobability = 0.3\nstart = 0.0')
     with InProcessFlight(mission, tmp_path / "run", seed=43) as flight:

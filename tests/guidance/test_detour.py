@@ -229,19 +229,6 @@ def test_path_of_which_no_shorter_part_is_free_keeps_its_corners():
     assert (np.diff(found[:, 0]) > 0.0).all()
 
 
-@pytest.mark.parametrize("mirror", [(1, -1, 1), (-1, 1, 1), (-1, -1, 1)], ids=["east", "north", "both"])
-def test_detour_of_the_mirrored_scenario_is_as_long(mirror):
-    places = [(6.0, 1.0), (9.0, -2.0), (9.0, 0.5), (14.0, 0.0)]
-    lengths = [
-        detour_of(
-            [pole(x * north, y * east, radius=0.6) for north, east in places],
-            start=(0.0, 0.0, -5.0), goal=(20.0 * x, 0.0, -5.0),
-        ).length
-        for x, y in ((1, 1), mirror[:2])
-    ]  # fmt: skip
-    assert lengths[1] == pytest.approx(lengths[0], rel=1e-3)
-
-
 def test_clearance_equals_that_of_collision_library():
     rng = np.random.default_rng(5)
     shapes = [Sphere(0.7), Pole(0.4, 5.0), Wall(size=(3.0, 0.5, 2.0), yaw=0.7)]

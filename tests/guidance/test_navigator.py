@@ -73,28 +73,6 @@ def test_mission_is_followed_while_progress_continues(navigator):
     assert navigator.hold_up.blocked(5.0) == ""
 
 
-def test_detour_is_searched_only_after_patience_has_elapsed(navigator):
-    settings = navigator.settings
-    held_up(navigator, [ACROSS], settings.patience - 0.1)
-    assert navigator.detours == 0
-    # Held up anew, it waits anew.
-    navigator.watch(1.0, 5.0, 1.0, straight(18.0), TRACKED)
-    held_up(navigator, [ACROSS], settings.patience - 0.1, begin=1.05)
-    assert navigator.detours == 0
-    held_up(navigator, [ACROSS], 0.3, begin=1.05 + settings.patience - 0.1)
-    assert navigator.detours == 1
-
-
-def test_detour_begins_only_where_the_payload_is_about_to_stop(navigator):
-    mission = moving = straight(18.0)
-    for time in 8.0 + 0.05 * np.arange(40):
-        assert np.linalg.norm(moving.derivatives(np.array([time]), 1)[1, 0]) > navigator.settings.begin_speed
-        navigator.watch(time, 8.0, 0.3, mission, moving)
-    assert navigator.detours == 0
-    held_up(navigator, [ACROSS], 0.05, begin=10.0)
-    assert navigator.detours == 1
-
-
 @pytest.mark.parametrize("obstacles", [[ACROSS], [pole("p", 10.0, 0.0)], [pole("a", 10.0, -1.0), pole("b", 10.0, 1.0)]])
 def test_detour_keeps_margin_and_returns_to_mission(navigator, obstacles):
     mission = straight(18.0)
@@ -209,13 +187,6 @@ def test_detour_is_flown_and_reason_cleared_when_path_opens(navigator):
     assert navigator.hold_up.reason
     held_up(navigator, [ACROSS], 9.0, begin=3.05)
     assert navigator.detours == 1
-    assert navigator.hold_up.reason == ""
-    assert navigator.hold_up.blocked(100.0) == ""
-
-
-def test_reason_is_cleared_when_progress_resumes(navigator):
-    held_up(navigator, [CLOSED], 3.0)
-    navigator.watch(3.1, 5.0, 1.0, straight(18.0), TRACKED)
     assert navigator.hold_up.reason == ""
     assert navigator.hold_up.blocked(100.0) == ""
 

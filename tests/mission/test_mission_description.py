@@ -3,20 +3,7 @@
 from pathlib import Path
 
 import pytest
-from mission_files import (
-    CIRCLE,
-    MISSIONS,
-    RETURN,
-    TAKE_OFF,
-    TOML,
-    A,
-    B,
-    description_of,
-    plan,
-    read,
-    row,
-    wpl,
-)
+from mission_files import CIRCLE, MISSIONS, RETURN, TAKE_OFF, TOML, A, B, description_of, plan, read, row, wpl
 
 from gcs.mission.read import read_mission
 

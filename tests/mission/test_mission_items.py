@@ -5,21 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from mission_files import (
-    HOME,
-    MISSIONS,
-    RETURN,
-    TAKE_OFF,
-    A,
-    B,
-    legs,
-    north,
-    plan,
-    read,
-    row,
-    shape,
-    wpl,
-)
+from mission_files import HOME, MISSIONS, RETURN, TAKE_OFF, A, B, legs, north, plan, read, row, shape, wpl
 
 from gcs.mission.route import Circle, FlyTo, HoldForever
 

@@ -5,22 +5,7 @@ import math
 from pathlib import Path
 
 import pytest
-from mission_files import (
-    CIRCLE,
-    DEGREE,
-    HOME,
-    RETURN,
-    TAKE_OFF,
-    A,
-    B,
-    area,
-    legs,
-    north,
-    plan,
-    read,
-    row,
-    survey,
-)
+from mission_files import CIRCLE, DEGREE, HOME, RETURN, TAKE_OFF, A, B, area, legs, north, plan, read, row, survey
 
 from gcs.flight.feasibility import preflight
 from gcs.mission.plan import read_plan

@@ -4,19 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from obstacle_scene import (
-    HERE,
-    NOISE,
-    Scene,
-    box,
-    hand_over,
-    map_of,
-    moving_tracks,
-    outside,
-    pole,
-    sphere,
-    wall,
-)
+from obstacle_scene import HERE, NOISE, Scene, box, hand_over, map_of, moving_tracks, outside, pole, sphere, wall
 
 from gcs.config import RangeSensorConfig
 from gcs.flight.stack import known_obstacles, sensor_rays

@@ -1,13 +1,11 @@
-"""IMM filter: against filterpy, against exact motion, and errors against its own covariance."""
+"""IMM filter: against formulas in numpy, against exact motion, and errors against its own covariance."""
 
 import numpy as np
 import pytest
-from filterpy.kalman import KalmanFilter
 from scipy.linalg import expm
 
 from idc_controller.perception.imm_kernels import advanced, predicted, updated
 from idc_controller.perception.motion_imm import MotionImm, MotionModels
-from idc_controller.perception.settings import ImmSettings
 
 MODELS = MotionModels()
 SIGMA = 0.03
@@ -61,34 +59,6 @@ def test_process_noise_is_its_integral(dt):
         assert np.linalg.eigvalsh(Q[i]).min() > -1e-15
 
 
-@pytest.mark.parametrize("singer", [(1.0, 1.0), (4.0, 0.5)])
-def test_single_model_equals_kalman_filter_of_filterpy(singer):
-    """With all weight on one model and no changes between them, axis by axis."""
-    models = MotionModels(ImmSettings(transition_rate=0.0, singer_accelerations=singer[:1], singer_times=singer[1:]))
-    rng = np.random.default_rng(1)
-    imm = MotionImm(models, 0.0, np.array([1.0, 2.0, 3.0]), VARIANCE)
-    index = 2
-    references = []
-    for axis in range(3):
-        reference = KalmanFilter(dim_x=3, dim_z=1)
-        reference.x = imm.x[index, axis].copy()
-        reference.P = imm.P[index, axis].copy()
-        reference.H = np.array([[1.0, 0.0, 0.0]])
-        reference.R = np.array([[VARIANCE[axis]]])
-        references.append(reference)
-    F, Q = models.step(0.1)
-    for k in range(1, 30):
-        imm.weight = np.eye(models.count)[index] + 1e-12
-        z = np.array([1.0, 2.0, 3.0]) + 0.05 * k + rng.normal(0.0, SIGMA, 3)
-        imm.advance(0.1 * k)
-        imm.update(z, VARIANCE)
-        for axis, reference in enumerate(references):
-            reference.predict(F=F[index], Q=Q[index])
-            reference.update(z[axis])
-            np.testing.assert_allclose(imm.x[index, axis], np.ravel(reference.x), atol=1e-9)
-            np.testing.assert_allclose(imm.P[index, axis], reference.P, atol=1e-9)
-
-
 def followed(motion, seed=0, until=8.0, each=lambda imm: None):
     imm = None
     rng = np.random.default_rng(seed)
@@ -137,18 +107,6 @@ def test_true_model_is_most_probable_and_predicts(motion, likely):
     assert ahead < 0.2
     assert np.all(np.linalg.eigvalsh(covariance) > 0.0)
     assert np.all(np.diff(np.trace(covariance, axis1=1, axis2=2)) > 0.0)
-
-
-def test_prediction_equals_propagation_without_model_changes():
-    models = MotionModels(ImmSettings(transition_rate=0.0))
-    imm = MotionImm(models, 0.0, np.array([1.0, 0.0, -5.0]), VARIANCE)
-    for k in range(1, 8):
-        imm.advance(0.1 * k)
-        imm.update(np.array([1.0 + 0.1 * k, 0.0, -5.0]), VARIANCE)
-    mean, covariance = imm.predict(np.array([imm.time + 0.4]))
-    imm.advance(imm.time + 0.4)
-    np.testing.assert_allclose(mean[0], imm.state[0], atol=1e-12)
-    np.testing.assert_allclose(np.diag(covariance[0]), imm.position_variance, atol=1e-9)
 
 
 def test_update_leaves_unmeasured_axis_unchanged():

@@ -53,7 +53,9 @@ def test_what_moves_is_found_in_time(mover):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [2, *(pytest.param(seed, marks=pytest.mark.long) for seed in (1, 3))])
-@pytest.mark.parametrize(("kind", "shape"), EACH)
+@pytest.mark.parametrize(
+    ("kind", "shape"), [pytest.param(*each, marks=[pytest.mark.long] * (each in LONG)) for each in EACH]
+)
 def test_what_moves_is_found_in_time_in_other_scenes(kind, shape, seed):
     check_found_in_time(kind, watch(KINDS[kind], SHAPES[shape], seed, until_found=True).found)
 

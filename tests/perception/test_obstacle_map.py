@@ -1,17 +1,12 @@
 """Obstacle map: what stands is covered by pieces, kept until it is looked through, and never taken to move."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from flights import InProcessFlight, short_figure
 from obstacle_scene import HERE, Scene, box, map_of, moving_tracks, outside, pole, run, sphere, wall
 from range_scene import occupied
 
-from gcs.flight import stack
 from gcs.mission.model import Obstacle
-from gcs.mission.read import read_mission
-from idc_controller.geometry.shapes import Capsule, Pole, Sphere
+from idc_controller.geometry.shapes import Capsule, Pole
 from vehicle_sim.world.obstacle_bodies import Obstacle as WorldObstacle
 
 SIGMAS = 3.0
@@ -140,38 +135,3 @@ def test_predictions_have_one_entry_for_each_time():
             assert np.all(np.diff(o.growth) >= -1e-9)
         else:
             assert not o.growth.any() and np.all(o.positions == o.positions[0])
-
-
-def test_equal_seeds_give_equal_maps():
-    maps = [map_of(), map_of()]
-    for m in maps:
-        run(m, lambda t: [sphere((6.0, 3.0 - 1.5 * t, -6.0)), pole((-5.0, 0.0))], 2.0, scene=Scene(9))
-    a, b = (m.predict(np.array([2.0, 3.0])) for m in maps)
-    assert len(a) > 1
-    for one, other in zip(a, b, strict=True):
-        np.testing.assert_array_equal(one.positions, other.positions)
-        assert one.name == other.name and one.shape.reach == other.shape.reach
-
-
-@pytest.mark.slow
-def test_map_in_flight_has_the_obstacles_the_vehicles_detect(tmp_path):
-    """The whole loop: sensors, MAVLink, the ground's codec and clocks, the map."""
-    mission = read_mission(short_figure(tmp_path))
-    obstacles = (
-        Obstacle("ball", (4.0, 4.0, -3.5), Sphere(0.5), known=False),
-        Obstacle("mast", (0.0, 6.0, -4.5), Pole(0.3, 9.0), known=False),
-        Obstacle("known", (-5.0, 0.0, -3.0), Sphere(0.4)),
-    )  # fmt: skip
-    mission = replace(mission, obstacles=obstacles)
-    with InProcessFlight(mission, tmp_path / "run", obstacles=obstacles) as flight:
-        obstacle_map = stack.obstacle_map(mission)
-        flown = flight.flight
-        flown.system = flown.failsafes.system = replace(flown.system, obstacle_map=obstacle_map)
-        flight.fly(until=6.0)
-        predicted = obstacle_map.predict(np.array([flight.now]))
-        assert obstacle_map.placement.discarded == 0
-        facing = np.array([[3.65, 3.65, -3.5], [0.0, 5.7, -3.0]])
-        assert outside(obstacle_map, flight.now, facing, "piece").max() < 0.1
-    assert [o.name for o in predicted if not o.name.startswith("piece")] == ["known"]
-    for _, _, centre in obstacle_map.seen.pieces:
-        assert min(np.linalg.norm(centre - [4.0, 4.0, -3.5]), np.linalg.norm(centre[:2] - [0.0, 6.0])) < 0.6

@@ -10,7 +10,6 @@ from range_scene import Box, Pole, Sensor, Sphere, is_occupied, is_seen_free, oc
 from idc_controller.perception.scan_placement import PlacedScan
 from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.standing_map import StandingMap
-from idc_controller.perception.voxel_kernels import HIGH, LOW
 
 SETTINGS = StandingMapSettings()
 PERIOD = 0.1
@@ -39,30 +38,6 @@ def fill(standing, *args, **kwargs):
     return np.concatenate(hits)
 
 
-STANDING = {
-    "pole of 0.1 m radius at 8 m": [Pole((8.0, 0.0, -4.0), 0.1, 8.0)],
-    "wall beside, at grazing angles": [Box((12.0, 3.0, -4.0), (24.0, 0.3, 8.0))],
-    "corner of a box": [Box((6.0, 4.0, -4.0), (4.0, 4.0, 8.0), 0.5)],
-    "slope": [Box((6.0, 0.0, 0.0), (8.0, 8.0, 0.3), 0.2, 0.5)],
-    "overhang": [Box((6.0, 0.0, -6.0), (4.0, 6.0, 1.0))],
-}
-
-
-@pytest.mark.parametrize("bodies", STANDING.values(), ids=STANDING)
-def test_no_point_that_was_hit_is_lost_while_it_stands(bodies):
-    standing, sensor = StandingMap(), Sensor(np.random.default_rng(1), ground=0.0)
-    hits = fill(standing, sensor, bodies, (0.0, 0.0, -4.0), 0.0, 5.0)
-    assert len(hits) > 200
-    bounds = standing._voxels.elements[occupied(standing).indices, LOW : HIGH + 3]
-    lost = hits[~is_occupied(standing, hits)]
-    assert len(lost) < 0.03 * len(hits)
-    checked = np.concatenate([lost, hits[:: 1 + len(hits) // 200]])
-    apart = np.maximum(np.maximum(bounds[:, None, :3] - checked, checked - bounds[:, None, 3:]), 0.0)
-    missed = np.linalg.norm(apart, axis=2).min(axis=0)
-    # Noise of a return is 0.1 m at most, of its axes together.
-    assert missed.max() < 0.3
-
-
 def test_pole_passed_by_grazing_rays_only_is_never_freed():
     """Rays that pass beside it and rays missed at it, from another side than it was hit from."""
     standing, sensor = StandingMap(), Sensor(np.random.default_rng(2), ground=0.0)
@@ -77,24 +52,6 @@ def test_pole_passed_by_grazing_rays_only_is_never_freed():
     heights = np.unique(np.floor(hits[:, 2] / 0.5))
     held = np.unique(np.floor(after.means[:, 2] / 0.5))
     assert set(heights) <= set(held)
-
-
-@pytest.mark.parametrize("body", [Box((5.0, 0.0, -4.0), (1.0, 2.0, 3.0)), Sphere((5.0, 0.0, -4.0), 0.5)], ids=type)
-def test_obstacle_taken_away_is_freed_when_it_is_looked_through(body):
-    standing, sensor = StandingMap(), Sensor(np.random.default_rng(3), rays=1000, ground=0.0)
-    wall = Box((9.0, 0.0, -4.0), (0.3, 20.0, 8.0))
-    around = lambda t: (0.0, 2.0 * np.sin(t), -4.0 + 0.5 * np.cos(t))  # noqa: E731
-    fill(standing, sensor, [body, wall], around, 0.0, 5.0)
-
-    def front():
-        means = occupied(standing).means
-        return np.sum((body.distance(means) < 0.4) & (means[:, 0] < 5.0))
-
-    before = front()
-    fill(standing, sensor, [wall], around, 5.0, 8.0)
-    assert front() > 0.2 * before  # not at once
-    fill(standing, sensor, [wall], around, 8.0, 30.0)
-    assert front() < 0.25 * before
 
 
 def rays_through(point, count=1):
@@ -144,14 +101,6 @@ def test_scan_that_hits_a_voxel_frees_nothing_of_it():
         both = PlacedScan(PERIOD * k, np.zeros(3), point, 0.05, 0.03, 0.009, np.tile(2.0 * point, (5, 1)))
         standing.add(both)
     assert is_occupied(standing, point)[0]
-
-
-def test_nothing_is_forgotten_by_time_or_out_of_sight():
-    standing, sensor = StandingMap(), Sensor(np.random.default_rng(4), ground=0.0)
-    fill(standing, sensor, [Box((6.0, 0.0, -4.0), (1.0, 4.0, 4.0))], (0.0, 0.0, -4.0), 0.0, 2.0)
-    before = occupied(standing).numbers
-    fill(standing, sensor, [], (60.0, 0.0, -4.0), 1000.0, 1002.0)
-    assert np.isin(before, occupied(standing).numbers).all()
 
 
 SEEN = 12.0  # s for which what stands is seen before the sphere moves past

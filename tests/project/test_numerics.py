@@ -59,10 +59,7 @@ def test_unpinned_environment_is_left_as_it_is(features):
 @pytest.mark.parametrize(
     "found, text",
     [
-        (
-            {"BLAS of numpy": "openblas SkylakeX", "BLAS of scipy": "openblas Haswell"},
-            "BLAS of numpy uses openblas",
-        ),
+        ({"BLAS of numpy": "openblas SkylakeX", "BLAS of scipy": "openblas Haswell"}, "BLAS of numpy uses openblas"),
         ({"BLAS of numpy": "mkl"}, "BLAS of numpy uses mkl"),
         ({"numpy": "X86_V3 X86_V4 AVX512_ICL"}, "numpy uses X86_V3 X86_V4"),
         ({"proxsuite": "proxsuite_pywrap_avx512"}, "proxsuite uses proxsuite_pywrap_avx512"),

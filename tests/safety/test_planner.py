@@ -202,19 +202,6 @@ def test_free_plan_is_the_linear_quadratic_optimum(planner):
     assert plan.slack == 0.0
 
 
-def test_plan_is_zero_without_deviation_and_obstacles(planner):
-    free = planner.free(np.zeros((5, 3)))
-    assert not free.knots.any()
-    assert free.cost == 0.0
-
-
-def test_free_plan_returns_to_mission(planner):
-    start = np.zeros((5, 3))
-    start[0] = [1.0, -0.5, 0.7]
-    free = planner.free(start)
-    assert np.abs(free.deviation[-1, 0]).max() < 0.1
-
-
 # Slacks and limits
 
 

@@ -7,13 +7,11 @@ import pytest
 from avoidance_checks import MARGIN
 from avoidance_scene import (
     STEP,
-    Scene,
     avoidance,
     estimate_at,
     fly,
     sphere,
     straight,
-    swinging,
 )  # fmt: skip
 
 from idc_controller.trajectory.trajectory import RestTrajectory
@@ -105,34 +103,6 @@ def test_disturbance_leaves_mission_unchanged_without_near_obstacles():
 def test_filter_leaves_setpoints_unchanged():
     u = np.arange(12.0)
     assert avoidance([]).safety.correct(0.0, u, estimate_at(0.0, np.zeros(3))) is u
-
-
-def test_scene_predicts_positions_at_several_times():
-    """Helper of the tests: obstacles at several moments."""
-    (predicted,) = Scene([swinging("s", (1.0, 2.0, 3.0), (0.5, 0.0, 0.0))]).predict(np.array([0.0, np.pi / 2]))
-    np.testing.assert_allclose(predicted.positions, [[1.0, 2.0, 3.0], [1.5, 2.0, 3.0]])
-
-
-def test_number_of_qps_reported_is_that_of_those_solved(monkeypatch):
-    mission, avoided = straight(16.0), avoidance([sphere("s", (5.0, 0.3, -5.0))])
-    planner, solved = avoided.safety.planner, []
-    solve = planner.solve
-
-    def watched(start, ahead, planes, *others):
-        if planes:  # without, it is the return to the reference, no avoidance
-            solved.append(len(planes))
-        return solve(start, ahead, planes, *others)
-
-    monkeypatch.setattr(planner, "solve", watched)
-    counts, expected = [], 0
-    for k in range(80):
-        time, before = STEP * k, len(solved)
-        avoided.step(time, mission)
-        # A plan is kept for the length of a stage, and its report with it.
-        expected = len(solved) - before or (expected if avoided.safety.report.qp_count else 0)
-        assert avoided.safety.report.qp_count == expected, time
-        counts.append(expected)
-    assert len({*counts}) >= 3
 
 
 def plans(avoided, mission, steps):

@@ -100,19 +100,6 @@ def test_wide_gap_is_flown_through():
 
 
 @pytest.mark.slow
-@pytest.mark.long
-def test_blocked_path_ends_in_safe_stop_with_reason():
-    flown = fly(avoidance([wall("the wall", 9.0, 0.0, (0.3, 300.0, 40.0))]), straight(14.0), 26.5)
-    assert min(flown.clearance().values()) >= MARGIN - TOLERANCE
-    assert np.isnan(flown.ends_at)
-    assert "the wall" in flown.avoidance.guidance.blocked(26.5)
-    assert np.linalg.norm(flown.path[1, -1]) < 0.05
-    assert flown.rates[-1] < 0.1
-    assert flown.reports[-1].lag > 1.0
-    check_smooth(flown)
-
-
-@pytest.mark.slow
 def test_progress_rate_falls_with_lag_and_recovers():
     """The obstacle on the path disappears later: progress waits for the payload."""
 

@@ -1,7 +1,5 @@
 """Stops of the safety filter: where no plan along the reference keeps clear of obstacles, the payload comes to rest."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from avoidance_checks import MARGIN
@@ -10,7 +8,6 @@ from paper_system import system
 
 from idc_controller.geometry.formation import Formation
 from idc_controller.safety.planner import Planner
-from idc_controller.safety.safety_filter import AvoidanceFilter
 from idc_controller.safety.settings import PlannerSettings
 
 SIGHT = 4.5
@@ -55,17 +52,6 @@ def test_payload_comes_to_rest_where_no_plan_keeps_the_margin(seed):
     slack, clearance = fly_among(dense_poles(seed))
     assert slack > 0.1
     assert clearance >= MARGIN
-
-
-def test_plans_with_slack_alone_lead_into_a_pole(monkeypatch):
-    """Without stops, and at the mission's speed whatever is missing of the margin."""
-
-    def unslowed(self, plan, clearance, *others):
-        return replace(plan, standing_slack=0.0), clearance, 0
-
-    monkeypatch.setattr(AvoidanceFilter, "_safer", unslowed)
-    _, clearance = fly_among(dense_poles(5))
-    assert clearance < 0.0
 
 
 def test_nearest_rest_costs_less_than_rest_elsewhere():

@@ -42,10 +42,7 @@ def uav_velocities(parameters: SystemParameters, state: SystemState) -> Array:
 
 
 def rk4_step(
-    parameters: SystemParameters,
-    state: SystemState,
-    inputs: Inputs | Callable[[float, SystemState], Inputs],
-    dt: float,
+    parameters: SystemParameters, state: SystemState, inputs: Inputs | Callable[[float, SystemState], Inputs], dt: float
 ) -> SystemState:
     """The state ``dt`` seconds later, by the classical Runge-Kutta method of fourth order.
 

@@ -10,7 +10,7 @@ from bodies import random_scene
 
 from gcs.config import RangeSensorConfig
 from idc_controller.geometry.obstacles import Bodies
-from idc_controller.geometry.shapes import Box, Capsule, Mesh, MeshHull, Pole, Sphere, Wall
+from idc_controller.geometry.shapes import Pole, Sphere, Wall
 from idc_controller.perception.range_sensors import RayPattern
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
@@ -24,8 +24,6 @@ LEVEL = (1.0, 0.0, 0.0, 0.0)
 HIGH = (0.0, 0.0, -50.0)
 """Out of reach of the ground."""
 
-OCTAHEDRON = MeshHull("octahedron.stl", ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)))
-
 
 def hits(directions, place, bodies, attitude=LEVEL, reach=REACH):
     return first_hits(np.array(directions, dtype=float), np.array([*place, *attitude]), reach, *RayBodies.of(bodies))
@@ -38,29 +36,6 @@ def random_directions(rng, count):
 
 
 # First hits
-
-
-def test_first_hits_are_at_the_analytic_distances():
-    along = [(1.0, 0.0, 0.0)]
-    x, _, z = HIGH
-    centre = (x + 5.0, 0.0, z)
-    for shape, expected in (
-        (Sphere(0.5), 4.5), (Pole(0.3, 4.0), 4.7),
-        (Wall((0.4, 3.0, 2.0)), 4.8), (Wall((0.4, 3.0, 2.0), math.pi / 2), 3.5),
-        (Capsule(0.3, 1.5), 4.7), (Capsule(0.3, 1.5, pitch=math.pi / 2), 5.0 - 0.75 - 0.3),
-        (Box((1.0, 1.0, 1.0), yaw=math.pi / 4), 5.0 - math.sqrt(0.5)), (Box((2.0, 1.0, 1.0), roll=0.3), 4.0),
-        (Mesh(OCTAHEDRON), 4.0), (Mesh(OCTAHEDRON, scale=0.5), 4.5),
-        (Mesh(OCTAHEDRON, yaw=math.pi / 4), 5.0 - math.sqrt(0.5)),
-    ):  # fmt: skip
-        assert hits(along, HIGH, [(shape, centre)])[0] == pytest.approx(expected, abs=1e-9), shape
-        assert hits(along, HIGH, [(shape, centre)], reach=3.0)[0] == math.inf
-        assert hits([(-1.0, 0.0, 0.0)], HIGH, [(shape, centre)])[0] == math.inf
-        assert hits(along, centre, [(shape, centre)])[0] == 0.0  # from inside
-    # Beside the axis.
-    offset = (x, 0.3, z)
-    assert hits(along, offset, [(Sphere(0.5), centre)])[0] == pytest.approx(5.0 - 0.4)
-    assert hits(along, offset, [(Pole(0.5, 4.0), centre)])[0] == pytest.approx(5.0 - 0.4)
-    assert hits([(0.6, 0.0, 0.8)], (x, 0.0, z - 6.0), [(Pole(2.0, 4.0), centre)])[0] == pytest.approx(5.0)  # on its end
 
 
 def test_rays_meet_the_ground():
@@ -119,19 +94,6 @@ def test_first_hits_agree_with_the_physics_engine(kind):
     differences = np.abs(ours[hit] - theirs[hit])
     assert np.median(differences) < 0.003
     assert np.mean(differences > 0.02) < 0.01
-
-
-def test_obstacle_hides_what_is_behind_it():
-    front, behind = (Wall((0.2, 4.0, 4.0)), (3.0, 0.0, -50.0)), (Sphere(0.5), (6.0, 0.0, -50.0))
-    ahead = [(1.0, 0.0, 0.0)]
-    for order in ([front, behind], [behind, front]):
-        assert hits(ahead, HIGH, order)[0] == pytest.approx(2.9)
-    assert hits(ahead, HIGH, [behind])[0] == pytest.approx(5.5)
-    pattern = RayPattern(2000, -0.5, 0.5)
-    directions = pattern.directions(0)
-    alone, hidden = hits(directions, HIGH, [behind]), hits(directions, HIGH, [front, behind])
-    assert np.isfinite(alone).sum() > 3
-    assert hidden[np.isfinite(alone)].max() < 3.2
 
 
 # Scans

@@ -5,9 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from idc_controller.rotations_float import into_body
-from vehicle_sim.world.state_kernels import (
-    measure,
-)
+from vehicle_sim.world.state_kernels import measure
 from vehicle_sim.world.world_state import flipped, quaternion_from_engine, upward_axis
 
 RNG = np.random.default_rng(7)

@@ -19,51 +19,6 @@ from vehicle_sim.world.world import World
 L_PAYLOAD = read_system(MISSIONS / "l_payload.toml").parameters()
 
 
-def forced(parameters, hz, seconds, law):
-    """World and Runge-Kutta in parallel under ``law(time) -> (world forces on UAVs, thrusts, torques)``.
-
-    Runge-Kutta takes the law as it is; the world takes it at the beginning of each step, as any controller would.
-    Yields pairs every 0.1 s.
-    """
-    state = hover_state(parameters, (0, 0, -20.0))
-    h, tenth = 0.01, round(0.1 * hz)
-
-    def inputs(time):
-        def at(since, s):
-            F, f, tau = law(time + since)
-            return Inputs(F=F + thrust_forces(s.quaternion, f), tau=tau)
-
-        return at
-
-    with World(parameters, physics_hz=hz) as world:
-        place(world, state)
-        for k in range(round(10 * seconds)):
-            for j in range(tenth):
-                F, f, tau = law((k * tenth + j) / hz)
-                world.step(f.tolist(), tau.tolist(), uav_forces=F.tolist())
-                assert world.contacts().pairs == 0
-            for j in range(10):
-                state = rk4_step(parameters, state, inputs(0.1 * k + h * j), h)
-            yield world.state(), state
-
-
-def test_thrust_and_torque_act_in_the_uavs_frames():
-    parameters = system(4)
-
-    def law(t):
-        f = parameters.hover_thrust * (1 + np.array([0.03, 0.05, 0.04, 0.02]) * np.sin(3 * t))
-        tau = 0.004 * np.sin(2 * t) * np.array([[1.0, 0.5, 2.0]] * 4)
-        return np.zeros((4, 3)), f, tau
-
-    for world, state in forced(parameters, 1000, 2.0, law):
-        assert np.linalg.norm(world.payload_position_in_world - state.r_0) < 1e-3
-        np.testing.assert_allclose(uav_array(world, "position_in_world"), uav_positions(parameters, state), atol=3e-3)
-        np.testing.assert_allclose(uav_array(world, "velocity_in_world"), uav_velocities(parameters, state), atol=0.01)
-        np.testing.assert_allclose(uav_array(world, "rates_in_body"), state.omega, atol=0.01)
-        np.testing.assert_allclose(world.payload_rates_in_payload, state.omega_0, atol=0.01)
-    assert np.abs(state.omega).max() > 0.1
-
-
 def random_state(n, seed):
     rng = np.random.default_rng(seed)
     q = rng.normal(size=(n, 3))
