@@ -56,10 +56,15 @@ NOT_FLOWN = [
     ("fly {hop} {hop}", "unrecognized arguments: "),
     ("fly {hop} --log-file none/log", "none/log: cannot be written: No such file"),
     ("fly {hop} --connect 14540", "--connect 14540: expected udp://HOST:PORT"),
-    (
-        "fly {hop} --realtime --connect udp://127.0.0.1:8 udp://127.0.0.1:9",
-        "2 of the team's vehicles, which are 3 or more",
-    ),
+    ("fly {hop} --connect {a}:1", "a router's, in real time only; add --realtime"),
+    ("fly {hop} --connect {a}:8 {a}:9", "2 of the team's vehicles, which are 3 or more"),
+    ("fly {hop} --connect {a}:8 {a}:9 --vehicles 4", "4 does not agree with 2"),
+    ("fly {hop} --connect {a}:8 {a}:8 {a}:9", "named twice"),
+    ("fly {hop} --connect {a}:2 {a}:3 {a}:4", "127.0.0.1:1; for one in real time add --realtime"),
+    ("fly {hop} --connect {a}:14540 {a}:14541", "use --connect udp://127.0.0.1:14580"),
+    ("fly {hop} --realtime --connect udp://10.0.0.7:14541", "use --connect udp://10.0.0.7:14581"),
+    ("fly {hop} --connect udpin://127.0.0.1:14550", "--realtime"),
+    ("fly {hop} --realtime --connect udpin://127.0.0.1:14550 {a}:1", "no other"),
     ("check", "the following arguments are required: MISSION"),
     ("check none.plan", "none.plan: cannot be read"),
     ("check {hop} --vehicles 2", "--vehicles: '2'"),
@@ -92,6 +97,13 @@ NOT_FLOWN = [
     ("courses --suite none.yaml", "none.yaml: cannot be read"),
     ("courses --suite {hop} --count 3", "--count is for random scenarios"),
     ("courses --suite {hop} --config none.toml", "none.toml: cannot be read"),
+    ("courses --suite {hop} --kinds boxes", "--kinds is for random scenarios"),
+    ("courses --suite {hop} --obstacle-speed 3", "--obstacle-speed is for random scenarios"),
+    ("courses --budget 1m", "--budget goes with --level both"),
+    ("courses --level half", "--level: invalid choice: 'half'"),
+    ("courses --level both --budget 30", "--budget: '30' is not a time"),
+    ("courses --level both --budget xm", "--budget: 'x' is not a number"),
+    ("courses --level planning --controller mpc", "the controller mpc plans nothing"),
     ("courses --out full", "full: is neither empty nor the folder of a campaign: name another with --out"),
     ("courses --set avoidance.margin", "'avoidance.margin' is not PATH=VALUE"),
     ("courses --set avoidance.margn=0.4", "there is no 'avoidance.margn'"),
@@ -133,7 +145,7 @@ def nothing_starts(monkeypatch):
 @pytest.mark.parametrize(("line", "reason"), NOT_FLOWN)
 def test_command_line_that_cannot_be_carried_out_is_refused_in_one_line(line, reason, tmp_path, capfd):
     before = sorted(tmp_path.rglob("*"))
-    assert gcs.app.cli.main([word.format(hop=HOP, long="x" * 300) for word in line.split()]) == 2
+    assert gcs.app.cli.main([word.format(hop=HOP, long="x" * 300, a="udp://127.0.0.1") for word in line.split()]) == 2
     output = capfd.readouterr()
     assert output.out == ""
     assert reason in output.err

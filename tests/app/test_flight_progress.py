@@ -1,6 +1,7 @@
 """The progress of a flight: a block at a terminal, lines elsewhere, and the flight as it is without."""
 
 import argparse
+import contextlib
 import io
 import re
 import sys
@@ -60,40 +61,40 @@ class Terminal(io.StringIO):
 class Flown:
     """A flight with what was printed, and the formation's hull."""
 
-    def __init__(self, folder, output=None, **console):
+    def __init__(self, folder, *consoles):
         folder.mkdir()
         system_file(folder)
         (folder / "hop.toml").write_text(MISSION)
         mission = read_mission(folder / "hop.toml")
         with InProcessFlight(mission, folder / "run", obstacles=mission.obstacles) as flight:
-            if output is None:
-                flight.fly()
-            else:
+            with contextlib.ExitStack() as entered:
                 log = FlightLog(flight.station)
-                with FlightProgress(Console(file=output, width=80, highlight=False, **console)) as progress:
-                    flight.fly(lambda _: (log.update(), progress.update(flight.flight)))
+                shown = [entered.enter_context(FlightProgress(console)) for console in consoles]
+                flight.fly(lambda _: (log.update(), *(progress.update(flight.flight) for progress in shown)))
             self.summary, self.alarms = flight.summary(), flight.flight.failsafes.alarms.alarms
         self.records = {path.name: path.read_bytes() for path in (folder / "run").iterdir()}
-        self.output = output and output.getvalue()
+        self.outputs = [console.file.getvalue() for console in consoles]
         hull = Formation(mission.system.parameters()).hull_points(np.zeros((1, 3)))[0]
         self.clearance = POLE - RADIUS - hull[:, 1].max()
 
 
 @pytest.fixture(scope="module")
 def flights(tmp_path_factory):
-    """The same flight at a terminal, with plain lines, and without any of them."""
+    """The same flight at a terminal and with plain lines at once, and without any of them."""
     folder, terminal = tmp_path_factory.mktemp("progress"), Terminal()
+    drawn = Console(file=terminal, width=80, highlight=False, force_terminal=True)
+    plain = Console(file=io.StringIO(), width=80, highlight=False)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("sys.stderr", terminal)
         with logging_to(QUIET):
-            drawn = Flown(folder / "drawn", terminal, force_terminal=True)
-    return drawn, Flown(folder / "plain", io.StringIO()), Flown(folder / "without")
+            shown = Flown(folder / "shown", drawn, plain)
+    return shown, Flown(folder / "without")
 
 
 @pytest.mark.slow
 def test_terminal_shows_phase_payload_clearance_and_links_within_its_width(flights):
-    drawn, *_ = flights
-    lines = [line.rstrip() for line in CONTROL.sub("", drawn.output).replace("\r", "\n").splitlines()]
+    shown, _ = flights
+    lines = [line.rstrip() for line in CONTROL.sub("", shown.outputs[0]).replace("\r", "\n").splitlines()]
     assert max(map(len, lines)) <= 80
     assert any(re.search(r"land .*━ +\d+ of 1\d s 0:\d\d:\d\d$", line) for line in lines)
     payload = re.compile(
@@ -107,21 +108,22 @@ def test_terminal_shows_phase_payload_clearance_and_links_within_its_width(fligh
 
 @pytest.mark.slow
 def test_terminal_prints_each_phase_and_each_alarm_once(flights):
-    drawn, *_ = flights
-    text = CONTROL.sub("", drawn.output)
+    shown, _ = flights
+    text = CONTROL.sub("", shown.outputs[0])
     assert text.count(ISOLATED) == 1
-    for alarm in drawn.alarms:
+    for alarm in shown.alarms:
         assert f"{alarm.time:.2f} s: {alarm.source}: {alarm.code.code}" in text
-    _, *rows = drawn.records["phases.csv"].decode().splitlines()
+    _, *rows = shown.records["phases.csv"].decode().splitlines()
     assert re.findall(r" s: phase ([a-z ]+)$", text, re.MULTILINE) == [row.split(",")[1] for row in rows]
-    assert re.search(r"\x1b\[31m\d+\.\d\d s: vehicle 2: channel_isolated", drawn.output)  # an error is red
+    assert re.search(r"\x1b\[31m\d+\.\d\d s: vehicle 2: channel_isolated", shown.outputs[0])  # an error is red
 
 
 @pytest.mark.slow
 def test_plain_lines_have_no_control_sequences_and_figures_every_ten_seconds(flights):
-    _, plain, _ = flights
-    assert "\x1b" not in plain.output and "\r" not in plain.output
-    lines = plain.output.splitlines()
+    shown, _ = flights
+    _, plain = shown.outputs
+    assert "\x1b" not in plain and "\r" not in plain
+    lines = plain.splitlines()
     assert max(map(len, lines)) <= 80
     status = [i for i, line in enumerate(lines) if line.startswith("   10.00 s  ")]
     assert len(status) == 1 and not any(line.startswith("   20.") for line in lines)
@@ -133,8 +135,8 @@ def test_plain_lines_have_no_control_sequences_and_figures_every_ten_seconds(fli
         "\n".join(lines[status[0] :]),
     ).groups()
     assert float(time) == pytest.approx(9.0, abs=1.0)
-    assert float(end) == pytest.approx(plain.summary["duration_s"], abs=4.0)  # spool-down comes after touchdown
-    assert float(error) < 0.1 and float(clearance) == pytest.approx(plain.clearance, abs=0.05)
+    assert float(end) == pytest.approx(shown.summary["duration_s"], abs=4.0)  # spool-down comes after touchdown
+    assert float(error) < 0.1 and float(clearance) == pytest.approx(shown.clearance, abs=0.05)
     assert float(loss) == pytest.approx(20.0, abs=8.0)
 
 
@@ -170,9 +172,7 @@ def test_standard_error_of_a_file_is_not_drawn(monkeypatch, is_terminal):
 
 @pytest.mark.slow
 def test_records_do_not_depend_on_what_is_printed(flights):
-    drawn, plain, without = flights
+    shown, without = flights
     timed = {"steps.csv", "summary.json"}  # compute times, and CPU
-    for printed in (drawn, plain):
-        assert printed.records.keys() == without.records.keys() > timed
-        different = {name for name, content in without.records.items() if printed.records[name] != content}
-        assert different <= timed
+    assert shown.records.keys() == without.records.keys() > timed
+    assert {name for name, content in without.records.items() if shown.records[name] != content} <= timed

@@ -4,7 +4,6 @@ Every vehicle differs from the others here: what is swapped or crossed between t
 """
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
@@ -13,15 +12,12 @@ from flights import MISSIONS
 from one_measurement import measurement
 
 from gcs.config import read_system
-from gcs.config.flight_settings import DEFAULTS
 from gcs.flight import stack
-from gcs.flight.preflight import Preflight
 from gcs.mavlink import px4
 from gcs.mavlink.clock import RemoteClock
 from gcs.mavlink.codec import Codec
-from gcs.mavlink.setpoints import SetpointStream, attitude_target, stop_plan_message
+from gcs.mavlink.setpoints import SetpointStream, attitude_target
 from gcs.mavlink.settings import LinkSettings
-from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.control.controller import IntegratedDecisionController
 from idc_controller.control.load_adaptation import LoadAdaptation
 from idc_controller.control.settings import ControllerSettings
@@ -32,9 +28,8 @@ from idc_controller.model.linear import LinearModel
 from idc_controller.rotations import rotation_from_quaternion
 from idc_controller.safety.filter_protocol import NoObstacles
 from idc_controller.trajectory.flatness import Load, Reference
-from idc_controller.trajectory.stop_plan import stop_plan
 from idc_controller.trajectory.trajectory import RestTrajectory
-from vehicle_sim.autopilot.setpoints import read_setpoint, read_stop_plan
+from vehicle_sim.autopilot.setpoints import read_setpoint
 
 ATTACHMENTS = ((0.5, 0.45, -0.25), (0.45, -0.5, -0.25), (-0.5, -0.4, -0.25), (-0.4, 0.5, -0.25))
 SYSTEM = read_system(MISSIONS / "system.toml")
@@ -111,42 +106,6 @@ def test_part_of_telemetry_that_is_no_number_is_not_measured(values, pose, motio
     no_rotation = mavlink.MAVLink_attitude_quaternion_message(1234, *(0.8, 0.8, 0.0, 0.0), 0.1, -0.2, 0.3)
     found = measurement(received(no_rotation, 3, px4.AUTOPILOT_COMPONENT), 2, 7.5)
     assert (found.has_pose, found.has_motion) == (False, True)
-
-
-# Telemetry on the pad -> positions before take-off
-
-
-def test_positions_on_the_pad_are_means_over_last_samples_of_each_source():
-    limit = DEFAULTS.takeoff_landing.position_samples
-    preflight = Preflight(SimpleNamespace(links=[None] * 3), DEFAULTS)
-    rng = np.random.default_rng(1)
-    noise = 0.05 * rng.standard_normal((limit + 10, 4, 3))
-    for k, moment in enumerate(noise):
-        assert preflight.has_positions == (k > 0)
-        for source in (PAYLOAD, 0, 1, 2):
-            preflight.add(Position(0.1 * k, source, 10.0 * source + moment[source + 1], np.zeros(3)))
-            preflight.add(Attitude(0.1 * k, source, np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)))
-        preflight.add(Position(0.1 * k, PAYLOAD, np.full(3, np.nan), np.zeros(3)))
-    assert preflight.payload == pytest.approx(-10.0 + noise[10:, 0].mean(axis=0))
-    assert preflight.vehicles == pytest.approx(10.0 * np.arange(3)[:, None] + noise[10:, 1:].mean(axis=0))
-
-
-def test_positions_on_the_pad_are_averaged_for_the_settle_time():
-    links = [VehicleLink(i, None) for i in (1, 2, 3)]
-    preflight = Preflight(SimpleNamespace(links=links), DEFAULTS)
-    assert not preflight.is_settled(100.0)
-    preflight.check_start = 7.0
-    duration = DEFAULTS.takeoff_landing.settle_time
-    assert not preflight.is_settled(7.0 + 0.99 * duration)
-    assert preflight.is_settled(7.0 + 1.01 * duration)
-
-
-def test_time_to_connect_counts_from_the_first_attempt():
-    preflight = Preflight(SimpleNamespace(links=[]), DEFAULTS)
-    assert np.isnan(preflight.connect_start)
-    for now in (3.0, 9.0):
-        preflight.connect(now)
-        assert preflight.connect_start == 3.0
 
 
 # Estimate, reference -> set-points
@@ -300,25 +259,6 @@ def test_setpoints_arrive_at_their_vehicle_as_decided():
         assert setpoint.thrust * P.thrust_max == pytest.approx(decision.thrusts[i], rel=1e-6)
         assert decision.u[2 * i : 2 * i + 2] == pytest.approx(decision.directions[i, :2])
         assert decision.u[2 * N + i] == pytest.approx(decision.thrusts[i])
-
-
-def test_stop_plan_begins_at_estimated_state_of_each_vehicle_and_ends_at_rest():
-    moving = estimated(v_0=np.array([1.0, -0.5, 0.0]))
-    plan = stop_plan(P, Reference(P, REST, NOMINAL).at(5.0 + 0.05 * np.arange(21)), 5.0, moving.x)
-    assert plan.start == 5.0
-    expected = P.p - P.l[:, None] * np.array([0.0, 0.0, 1.0])
-    assert plan.control_points[:, 0] - HOVER == pytest.approx(expected, abs=1e-6)
-    velocity = 4.0 * (plan.control_points[:, 1] - plan.control_points[:, 0]) / plan.duration
-    assert velocity == pytest.approx(np.tile([1.0, -0.5, 0.0], (N, 1)), abs=1e-9)
-    assert plan.control_points[:, 3] == pytest.approx(plan.control_points[:, 4])
-    for i in range(N):
-        [on_wire] = Codec(1, 1).decode(
-            Codec(255, 190).frame(stop_plan_message(8.25, plan.duration, plan.control_points[i].tolist()))
-        )
-        flown = read_stop_plan(on_wire.fields, SYSTEM.onboard().setpoints)
-        assert flown.start == pytest.approx(8.25)
-        assert flown.duration == pytest.approx(plan.duration, rel=1e-6)
-        assert np.array(flown.control_points) == pytest.approx(plan.control_points[i], abs=1e-5)
 
 
 def test_confirmations_of_setpoints_give_their_loss_and_copies():

@@ -2,7 +2,6 @@
 
 import math
 import re
-from contextlib import closing
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -26,7 +25,6 @@ from gcs.mavlink.vehicle_link import AddressConflict
 from idc_controller.geometry.shapes import Sphere
 from idc_controller.perception.standing_obstacles import MapObstacle, StandingObstacles
 from idc_controller.trajectory.trajectory import RestTrajectory
-from vehicle_sim.swarm import Swarm
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE, SETTINGS = DOCS / "failsafes.md", DOCS / "settings.md"
@@ -144,11 +142,7 @@ def test_more_severe_reaction_wins_and_a_milder_one_is_only_recorded():
 
 @pytest.mark.parametrize(
     ("phase", "reaction"),
-    [
-        (Phase.CHECK, Reaction.REFUSE),
-        (Phase.SPOOL_UP, Reaction.DISARM),
-        (Phase.LAND, Reaction.AUTONOMOUS_LANDING),
-    ],
+    [(Phase.CHECK, Reaction.REFUSE), (Phase.SPOOL_UP, Reaction.DISARM), (Phase.LAND, Reaction.AUTONOMOUS_LANDING)],
 )
 def test_reaction_on_the_ground_is_to_stay_there(phase, reaction):
     assert Failsafe.TELEMETRY_LOST.reaction.in_phase(phase) is reaction
@@ -172,16 +166,6 @@ def test_data_link_loss_waits_for_a_pending_descent():
 
 def test_data_link_of_vehicles_that_never_answered_is_not_lost():
     assert evaluated(state(link(1, age=math.inf)), Check.STEP, Phase.CONNECT) is None
-
-
-def test_set_point_loss_of_the_vehicles_follows_the_telemetry_timeout(tmp_path):
-    path = tmp_path / "system.toml"
-    path.write_text("[flight.failsafe]\ntelemetry_timeout = 0.6\n")
-    config = read_system(path)
-    assert config.flight.failsafe.telemetry_timeout == 0.6
-    with closing(Swarm(config, seed=1)) as swarm:
-        assert [vehicle.parameters["COM_OF_LOSS_T"] for vehicle in swarm.vehicles] == pytest.approx([0.6] * 4)
-    assert "telemetry_timeout" in SETTINGS.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(

@@ -2,16 +2,8 @@
 
 import numpy as np
 import pytest
-from flights import (
-    MISSIONS,
-    check_within_limits,
-    copied_mission,
-    flown,
-    position_rmse,
-    short_figure,
-    truth_of,
-)
-from programs import addresses_of, base_port, gcs_fly, swarm_process
+from flights import MISSIONS, check_within_limits, flown, short_figure, truth_of
+from programs import gcs_fly
 
 from gcs.mission.read import read_mission
 from gcs.mission.route import FlyTo
@@ -35,14 +27,6 @@ def test_figure_eight_is_flown_within_limits(figure):
     assert (folder / "run" / "report.html").exists() and (folder / "run" / "poster.png").exists()
 
 
-@pytest.mark.long
-def test_truth_repeats_to_the_byte_with_same_seed(figure):
-    """With another seed it does not: tests/vehicle/test_swarm.py, where a shorter flight repeats as well."""
-    folder, mission, _, _ = figure
-    assert gcs_fly(mission, folder / "again", "--seed", 7341, "--no-pictures")[0] == 0
-    assert (folder / "run" / "truth.csv").read_bytes() == (folder / "again" / "truth.csv").read_bytes()
-
-
 def test_short_figure_covers_whole_curve(figure):
     truth = truth_of(figure[0] / "run")
     assert truth["payload_x_m"].max() > 5.5
@@ -56,26 +40,6 @@ def test_short_figure_covers_whole_curve(figure):
 def test_figure_eight_is_flown_by_other_team_sizes(tmp_path, vehicles):
     mission = read_mission(short_figure(tmp_path, duration=4.0, altitude=1.5, vehicles=vehicles))
     summary = flown(mission, tmp_path / "run", seed=11)
-    check_within_limits(summary)
-
-
-@pytest.mark.long
-def test_figure_eight_is_flown_with_asymmetric_attachments(tmp_path):
-    attachments = "[[0.5, 0.45, -0.25], [0.45, -0.5, -0.25], [-0.5, -0.4, -0.25], [-0.4, 0.5, -0.25]]"
-    mission = read_mission(short_figure(tmp_path, duration=8.0, attachments=attachments))
-    assert mission.system.team.attachments is not None
-    shares = mission.system.parameters().payload_share
-    assert shares.max() - shares.min() > 0.01
-    summary = flown(mission, tmp_path / "run", seed=12)
-    assert summary["completed"]
-    assert summary["position_rmse_m"]["total"] <= 0.03
-    assert summary["contacts"] == 0
-
-
-@pytest.mark.long
-def test_hover_keeps_its_position(tmp_path):
-    folder = copied_mission(tmp_path, "hover.toml")
-    summary = flown(read_mission(folder), tmp_path / "run", seed=5)
     check_within_limits(summary)
 
 
@@ -109,25 +73,3 @@ def test_every_waypoint_is_passed_and_every_hold_held(tmp_path, name):
             assert stays, leg.position
             assert max(stays) >= leg.hold - 0.1, f"{leg.position}: held {max(stays):.1f} s of {leg.hold} s"
         begin += near[0]
-
-
-# Two programs
-
-
-def test_two_programs_with_different_payload_masses_fly_in_lockstep(tmp_path):
-    ground = short_figure(tmp_path, duration=6.0, altitude=1.5)
-    heavy = tmp_path / "heavy"
-    heavy.mkdir()
-    heavier = short_figure(heavy, duration=6.0, altitude=1.5, payload_mass_factor="1.1")
-    swarm = swarm_process(
-        "--lockstep", "--mission", heavier, "--run-dir", tmp_path / "world", "--base-port", base_port()
-    )
-    try:
-        addresses = addresses_of(swarm)
-        urls = [addresses[f"vehicle {i}"] for i in (1, 2, 3, 4)]
-        code, summary = gcs_fly(ground, tmp_path / "run", "--no-pictures", "--connect", *urls)
-        assert code == 0, summary
-    finally:
-        swarm.terminate()
-        swarm.communicate(timeout=300)
-    assert position_rmse(tmp_path / "world", tmp_path / "run") <= 0.035

@@ -1,25 +1,19 @@
 """Every end of a flight: a clear message and exit code, the payload on the ground, records closed."""
 
-import contextlib
 import json
 import math
 import os
 import re
 import signal
-import socket
 
 import numpy as np
 import pytest
-from flights import InProcessFlight, address_of, short_figure, truth_of
+from flights import InProcessFlight, short_figure, truth_of
 from programs import PATIENCE, GcsProcess, addresses_of, base_port, swarm_process
 from pymavlink import mavutil
 
-from gcs.app.cli import main
-from gcs.flight.phase import Phase
-from gcs.mavlink import px4
 from gcs.record.landing import is_set_down
 from gcs.record.modes import stops_after
-from idc_controller.trajectory.trajectory import RestTrajectory
 from vehicle_sim.faults.fault_injector import FaultInjector
 
 
@@ -52,23 +46,6 @@ def check_on_the_ground(folder, height=0.25):
 
 
 # Two programs
-
-
-@pytest.mark.slow
-@pytest.mark.long  # the second one follows a first one, too; tests/app/test_interrupt.py
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["ctrl-c", "sigterm"])
-def test_ctrl_c_in_flight_lands_and_closes_the_records(tmp_path, number):
-    gcs = GcsProcess(short_figure(tmp_path, duration=30.0, altitude=1.5), tmp_path / "run")
-    gcs.until_phase("fly")
-    gcs.process.send_signal(number)
-    code, errors = gcs.end()
-    assert code == 130
-    assert "flight broken off: interrupted" in errors
-    summary = check_records_closed(gcs.folder)
-    assert (summary["outcome"], summary["reason"]) == ("interrupted", "interrupted")
-    assert summary["contacts"] == 0
-    assert max(summary["payload_tilt_max_deg"].values()) < 5.0
-    check_on_the_ground(gcs.folder)
 
 
 @pytest.mark.slow
@@ -124,48 +101,6 @@ def test_vehicles_hold_then_land_when_the_ground_is_killed(tmp_path):
     assert truth["contacts"].max() == 0
 
 
-@pytest.mark.slow
-def test_unreachable_vehicles_are_refused_with_their_address(tmp_path):
-    with contextlib.ExitStack() as opened:
-        silent = [opened.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) for _ in range(4)]
-        for endpoint in silent:
-            endpoint.bind(("127.0.0.1", 0))
-        urls = [f"udp://127.0.0.1:{endpoint.getsockname()[1]}" for endpoint in silent]
-        code, errors = GcsProcess(
-            short_figure(tmp_path), tmp_path / "run", "--realtime", "--speed", "10", "--connect", *urls
-        ).end()
-    assert code == 1, errors
-    assert f"vehicle 1 does not answer at {urls[0].removeprefix('udp://')}" in errors
-    assert json.loads((tmp_path / "run" / "summary.json").read_text())["outcome"] == "aborted"
-
-
-@pytest.mark.parametrize(
-    ("options", "reason"),
-    [
-        (("--connect", "udp://127.0.0.1:1", "udp://127.0.0.1:2", "--vehicles", "4"), "4 does not agree with 2"),
-        (("--connect", "udp://127.0.0.1:1"), "a router's, in real time only; add --realtime"),
-        (("--realtime", "--connect", "udp://10.0.0.7:14541"), "14580 and on, as PX4's do"),
-        (("--realtime", "--connect", "udp://10.0.0.7:14541"), "use --connect udp://10.0.0.7:14581"),
-        (("--connect", "udp://127.0.0.1:14540", "udp://127.0.0.1:14541"), "use --connect udp://127.0.0.1:14580"),
-        (("--connect", "udp://127.0.0.1:2", "udp://127.0.0.1:3", "udp://127.0.0.1:4"), "127.0.0.1:1; for one in real"),
-        (("--connect", "udp://127.0.0.1:2", "udp://127.0.0.1:3", "udp://127.0.0.1:4"), "add --realtime"),
-        (("--connect", "udp://127.0.0.1:1", "udp://127.0.0.1:2"), "2"),
-        (("--connect", "udp://127.0.0.1:1", "udp://127.0.0.1:1", "udp://127.0.0.1:2"), "named twice"),
-        (("--connect", "udpin://127.0.0.1:14550"), "--realtime"),
-        (("--realtime", "--connect", "udpin://127.0.0.1:14550", "udp://127.0.0.1:1"), "no other"),
-        (("--connect", "tcp://127.0.0.1:1"), "expected udp://"),
-        (("--config", "nowhere.toml"), "nowhere.toml"),
-        (("--vehicles", "2"), "2"),
-    ],
-)
-def test_unusable_input_ends_before_anything_is_started(tmp_path, capsys, options, reason):
-    assert main(["fly", str(short_figure(tmp_path)), "--run-dir", str(tmp_path / "run"), *options]) == 2
-    printed = capsys.readouterr()
-    assert reason in printed.err and printed.out == ""
-    assert len(printed.err.strip().splitlines()) == 1
-    assert not (tmp_path / "run").exists()
-
-
 # One process
 
 
@@ -201,30 +136,6 @@ class Radio(FaultInjector):
         return passed
 
 
-def named(system_id):
-    """The address of a vehicle in a message."""
-    host, port = address_of(system_id)
-    return f"{host}:{port}"
-
-
-def test_vehicle_that_never_answers_is_refused(tmp_path):
-    with InProcessFlight(short_figure(tmp_path), tmp_path / "run", faults=Cut(3, 0.0)) as flight:
-        flight.fly()
-        assert flight.flight.reason == f"3 of 4 vehicles connected: vehicle 3 does not answer at {named(3)}"
-        assert not flight.flight.completed
-        assert flight.swarm.at_rest
-
-
-def test_vehicle_at_the_address_of_another_is_refused(tmp_path):
-    addresses = [address_of(system_id) for system_id in (2, 1, 3, 4)]
-    with InProcessFlight(short_figure(tmp_path), tmp_path / "run", addresses=addresses) as flight:
-        flight.fly()
-        assert flight.flight.reason == (
-            f"2 of 4 vehicles connected: vehicle 1 does not answer at {named(2)}: vehicle 2 does; "
-            f"vehicle 2 does not answer at {named(1)}: vehicle 1 does"
-        )
-
-
 def test_link_that_is_too_slow_is_measured_on_the_ground(tmp_path):
     with InProcessFlight(short_figure(tmp_path), tmp_path / "run", faults=Radio(2, 2500.0)) as flight:
         flight.fly()
@@ -242,21 +153,6 @@ def test_vehicle_that_refuses_to_arm_disarms_all(tmp_path):
         assert "vehicle 2 answers MAV_CMD_COMPONENT_ARM_DISARM with temporarily_rejected" in flight.flight.reason
         assert "the compass is upside down" in flight.flight.reason
         assert not any(vehicle.autopilot.armed for vehicle in flight.swarm.vehicles)
-
-
-def test_vehicle_that_is_armed_already_is_refused(tmp_path):
-    with InProcessFlight(short_figure(tmp_path), tmp_path / "run") as flight:
-        flight.swarm.advance_to(0.1)
-        flight.swarm.vehicles[2].autopilot.arm(0.1)
-        flight.fly()
-        assert "vehicle 3 is armed already" in flight.flight.reason
-
-
-def test_vehicle_with_another_parameter_is_refused(tmp_path):
-    with InProcessFlight(short_figure(tmp_path), tmp_path / "run") as flight:
-        flight.swarm.vehicles[0].parameters.by_name(px4.PARAM_THRUST_MAX).value = 20.0
-        flight.fly()
-        assert flight.flight.reason == "vehicle 1 has CLFT_THRUST_MAX = 20, the system file says 30"
 
 
 @pytest.mark.slow
@@ -291,78 +187,6 @@ def test_link_loss_of_one_vehicle_lands_all_of_them(tmp_path, telemetry, command
     # A vehicle without commands stops and reports it; one without telemetry is detected at a control step.
     # The set-point loss time, 0.46 s, and of these two half a control period or a whole one.
     assert max(stops.values()) - 16.4 <= (0.515 if telemetry else 0.485)
-    check_set_down(tmp_path / "run", summary)
-
-
-class TelemetryLoss(FaultInjector):
-    """Loss of telemetry from ``at`` (s) on; commands still arrive."""
-
-    def __init__(self, at):
-        super().__init__()
-        self.at = at
-
-    def from_vehicle(self, vehicle, leaving, now):
-        return () if now >= self.at else leaving
-
-
-@pytest.mark.slow
-@pytest.mark.long
-def test_descent_is_commanded_when_only_telemetry_is_lost(tmp_path):
-    modes = []
-
-    def look(flight):
-        modes.append({vehicle.autopilot.mode for vehicle in flight.swarm.vehicles})
-
-    mission = short_figure(tmp_path, duration=20.0)
-    with InProcessFlight(mission, tmp_path / "run", seed=1201, faults=TelemetryLoss(16.4)) as flight:
-        flight.fly(look)
-        assert "no vehicle sends telemetry" in flight.flight.reason
-        assert modes[-1] == {px4.MODE_LAND}
-        assert flight.run_without_ground()
-        summary = flight.summary()
-    check_set_down(tmp_path / "run", summary)
-
-
-@pytest.mark.slow
-def test_touchdown_is_not_detected_high_above_the_ground(tmp_path):
-    """Above its reference and still, as wind may hold it: no touch-down, and the vehicles are left to land at last."""
-    with InProcessFlight(short_figure(tmp_path, duration=2.0, altitude=1.5), tmp_path / "run") as in_process:
-        in_process.fly(stop=lambda: in_process.flight.phase is Phase.LAND)
-        flight = in_process.flight
-        true = flight.control.estimator.estimate
-
-        def still_at(height):
-            def estimate(*arguments):
-                found = true(*arguments)
-                x = found.x.copy()
-                x[2], x[5] = -height, 0.0
-                return found._replace(x=x)
-
-            return estimate
-
-        reference = flight.control.controller.reference(flight.mission_trajectory.trajectory)
-        high, low = (still_at(height)(in_process.now, reference) for height in (5.0, 0.3))
-        descent = RestTrajectory(np.array([0.0, 0.0, -1.5]), in_process.now - 20.0)
-        assert not flight.system.payload.has_touched_down(in_process.now, descent, high)
-        assert flight.system.payload.has_touched_down(in_process.now, descent, low)
-        assert not flight.system.payload.is_descent_stalled(in_process.now, descent, low)
-        flight.mission_trajectory.trajectory = descent
-        flight.control.estimator.estimate = still_at(5.0)
-        in_process.fly()
-        assert flight.reason == "the payload does not descend"
-        assert in_process.run_without_ground()
-        summary = in_process.summary()
-    assert is_set_down(summary["landing"])
-
-
-@pytest.mark.slow
-@pytest.mark.long  # in wind as well: below
-@pytest.mark.parametrize("moment", [13.3, 17.8])
-def test_vehicles_without_ground_stop_simultaneously_and_set_the_payload_down(tmp_path, moment):
-    with InProcessFlight(short_figure(tmp_path, duration=20.0), tmp_path / "run", seed=1201) as flight:
-        flight.fly(until=moment)
-        assert flight.run_without_ground()
-        summary = flight.summary()
     check_set_down(tmp_path / "run", summary)
 
 

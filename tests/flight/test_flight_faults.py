@@ -23,7 +23,7 @@ pytestmark = pytest.mark.slow
 
 pytest_plugins = ["gcs.campaign.pytest_plugin"]
 
-START = 13.0  # s after take-off: on the figure
+START = 9.0  # s after take-off: on the figure
 LIMITS = Limits(position_rmse=0.15, settle=0.0, payload_tilt_deg=4.0, uav_separation=0.75)
 
 
@@ -35,9 +35,9 @@ def of_all(*parameters, start=START, duration=None):
     return [fault(each, start, duration) for each in parameters]
 
 
-FIRST = {"start": START, "duration": 5.0}
-THEN = {"start": START + 7.0, "duration": 5.0}
-LAST = {"start": START + 14.0}  # and through the landing
+FIRST = {"start": START, "duration": 4.0}
+THEN = {"start": START + 5.5, "duration": 4.0}
+LAST = {"start": START + 11.0}  # and through the landing
 FAULTS = {
     "one link late, velocity unknown, position drifting": [
         *of_one(Latency(delay=0.06), **FIRST),
@@ -91,7 +91,7 @@ LONG = {
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.long] * (name in LONG)) for name in FAULTS])
 def test_flight_with_faults_one_after_another_completes_within_limits(name, tmp_path):
-    duration = 24.0 if "," in name else 12.0
+    duration = 18.0 if "," in name else 8.0
     mission = short_figure(tmp_path, duration=duration, altitude=2.5 if "climb" in name else 1.5)
     check_flown_within(LIMITS, mission, tmp_path / "run", FAULTS[name], seed=31)
 
@@ -108,10 +108,10 @@ def test_velocity_that_drifts_does_not_outweigh_the_right_position(rate, tmp_pat
 def test_bias_of_attitude_on_board_is_compensated(tmp_path):
     """The disturbance force is estimated, then the vehicle deviates no more."""
     wrong = of_one(Bias(amount=0.05, channel="attitude", at_source=True))
-    mission = short_figure(tmp_path, duration=20.0)
+    mission = short_figure(tmp_path, duration=16.0)
     check_flown_within(Limits(uav_separation=0.7), mission, tmp_path / "run", wrong, seed=34)
     run = read_run(tmp_path / "run")
-    # It began 13 s after lift-off, which comes about 3 s after the records begin.
+    # It began 9 s after lift-off, which comes about 3 s after the records begin.
     assert run.uav_separation()[run.time > START + 10.0].min() > 0.93
 
 

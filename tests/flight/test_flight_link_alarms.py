@@ -29,16 +29,6 @@ def hop(folder, *faults):
         return found, flight.flight.reason
 
 
-def test_step_of_a_clock_is_named_beside_the_latency_of_a_slow_link(tmp_path):
-    slow = Fault(kind="latency", start=0.0, settings={"delay": 0.06})
-    step = Fault(kind="clock_step", start=4.0, vehicles=(3,), settings={"step": 0.5})
-    alarms, reason = hop(tmp_path, slow, step)
-    assert not reason
-    assert alarms.keys() == {MonitorAlarm.LINK_LATENCY, CLOCK}
-    assert alarms[MonitorAlarm.LINK_LATENCY].keys() == ALL
-    assert alarms[CLOCK].keys() == {"vehicle 3"} and 4.0 <= alarms[CLOCK]["vehicle 3"] <= 4.2
-
-
 @pytest.mark.parametrize("rate", [5760.0, pytest.param(11520.0, marks=pytest.mark.long)])
 def test_radio_of_a_low_rate_is_named_as_congestion_and_no_clock_is_blamed(tmp_path, rate):
     cap = Fault(kind="bandwidth_cap", start=0.0, settings={"rate": rate, "queue": 2048})

@@ -14,7 +14,6 @@ from gcs.mavlink import px4
 
 pytestmark = pytest.mark.slow
 
-DATAGRAMS = 60_000  # to the vehicle, and as many to the ground
 EXCHANGES = 1000  # in which they come; the flight has some more
 VEHICLE = 1  # the team's time is its time
 OTHER_HOST = ("10.0.0.66", 40002)
@@ -39,9 +38,10 @@ AGAINST_GROUND = [
 class Storm:
     """Hostile traffic at every moment in the air, as much to one vehicle as to the ground."""
 
-    def __init__(self, seed):
+    def __init__(self, seed, datagrams):
         self.traffic = Traffic(VEHICLE)
-        self.left = DATAGRAMS
+        self.left = datagrams  # to the vehicle, and as many to the ground
+        self._at_once = -(-datagrams // EXCHANGES)
         self._to_vehicle = HostileTraffic(
             seed, self.traffic.to_it, GROUND, AGAINST_VEHICLE, hostile_to_vehicle(VEHICLE), VEHICLE
         )
@@ -58,7 +58,7 @@ class Storm:
         self._last = now
         vehicle = in_process.swarm.vehicles[VEHICLE - 1]
         before = state(vehicle)
-        for _ in range(min(-(-DATAGRAMS // EXCHANGES), self.left)):
+        for _ in range(min(self._at_once, self.left)):
             vehicle.receive(*self._to_vehicle.draw(), now)
             in_process.station.receive(*self._to_ground.draw(), now)
             self.left -= 1
@@ -76,18 +76,19 @@ def state(vehicle):
     )  # fmt: skip
 
 
-def test_hostile_datagrams_leave_flight_unchanged(tmp_path):
+@pytest.mark.parametrize("datagrams", [20_000, pytest.param(200_000, marks=pytest.mark.long)])
+def test_hostile_datagrams_leave_flight_unchanged(datagrams, tmp_path):
     mission = short_figure(tmp_path, duration=3.0, altitude=1.5)
     with InProcessFlight(mission, tmp_path / "calm", seed=3) as calm:
         calm.fly()
         check_within_limits(calm.summary())
-    storm = Storm(seed=5)
+    storm = Storm(5, datagrams)
     with InProcessFlight(mission, tmp_path / "storm", seed=3, faults=storm.traffic) as flight:
         flight.fly(storm)
         check_within_limits(flight.summary())
     assert storm.left == 0
-    assert flight.swarm.vehicles[VEHICLE - 1].refused_setpoints > 0.01 * DATAGRAMS
-    assert flight.station.router.refused > 0.9 * DATAGRAMS
+    assert flight.swarm.vehicles[VEHICLE - 1].refused_setpoints > 0.01 * datagrams
+    assert flight.station.router.refused > 0.9 * datagrams
     for name in ("truth.csv", "estimate.csv"):
         assert (tmp_path / "storm" / name).read_bytes() == (tmp_path / "calm" / name).read_bytes()
 

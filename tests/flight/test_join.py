@@ -60,9 +60,7 @@ class Ahead(Disturbances):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("waited", "ahead"), [(14.0, 0.0), (0.3, 60.0), (0.3, 3600.0), (0.3, WRAP - 5.0), (0.3, WRAP - 0.4)]
-)
+@pytest.mark.parametrize(("waited", "ahead"), [(14.0, 0.0), (0.3, 3600.0), (0.3, WRAP - 5.0), (0.3, WRAP - 0.4)])
 def test_ground_that_joins_a_swarm_raises_no_alarm_and_counts_from_its_own_start(tmp_path, caplog, waited, ahead):
     system_file(tmp_path)
     (tmp_path / "hop.toml").write_text(HOP)

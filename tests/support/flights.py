@@ -1,6 +1,5 @@
 """Flights in this process for tests: worlds other than the mission's, questions at every exchange, short missions."""
 
-import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -72,31 +71,12 @@ def system_file(folder, **changes):
     return path
 
 
-NO_NOISE = {
-    "position": None,  # several tables have one
-    "attitude_deg": "0.0", "uav_velocity": "0.0", "uav_rates": "0.0", "payload_velocity": "0.0", "payload_rates": "0.0",
-}  # fmt: skip
-
-
-def noiseless(mission):
-    """The mission in a world with sensors without noise."""
-    sensors = mission.system.sensors
-    names = ("position", "attitude_deg", "uav_velocity", "uav_rates", "payload_velocity", "payload_rates")
-    return replace(mission, system=replace(mission.system, sensors=replace(sensors, **dict.fromkeys(names, 0.0))))
-
-
 def short_figure(folder, duration=10.0, altitude=2.5, **changes):
     """Path of a figure eight of ``duration`` (s) in ``folder``, with a system file of its own beside it."""
     system_file(folder, **changes)
     path = folder / "short_figure.toml"
     path.write_text(SHORT_FIGURE.format(duration=duration, altitude=altitude))
     return path
-
-
-def copied_mission(folder, name, **changes):
-    """Path of a copy of one of the project's missions, with a system file of its own beside it."""
-    system_file(folder, **changes)
-    return Path(shutil.copy(MISSIONS / name, folder))
 
 
 class InProcessFlight(FlightInProcess):
