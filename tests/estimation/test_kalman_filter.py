@@ -20,6 +20,7 @@ from idc_controller.estimation.kalman_filter import Innovation, SparseRows, Stru
 from idc_controller.estimation.measurement_model import MeasurementModel
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, MeasurementNoise, Position
 from idc_controller.estimation.process_model import ProcessModel
+from idc_controller.estimation.propagation_kernels import about_reference
 from idc_controller.estimation.settings import EstimatorSettings, ProcessNoiseSettings
 from idc_controller.estimation.update_kernels import gated, mean_products
 from idc_controller.model.linear import LinearModel
@@ -286,6 +287,22 @@ def test_compiled_mean_products_equal_plain_ones():
     plain = [(normalised * last)[accepted & part].mean() for part in (of_payload, ~of_payload)]
     assert mean_products(normalised, last, accepted, of_payload) == pytest.approx(plain, rel=1e-12)
     assert np.isnan(mean_products(normalised, last, of_payload, of_payload)[1])
+
+
+@pytest.mark.parametrize("vehicles", [3, 4])
+def test_state_and_setpoints_of_reference_between_times_equal_plain_numpy(vehicles):
+    model = LinearModel(read_system(MISSIONS / "system.toml").with_vehicles(vehicles).parameters())
+    process, layout, g = ProcessModel(model, ProcessNoiseSettings()), model.layout, model.parameters.g
+    load = Load(5.5, np.array([1.0, -2.0, 0.5]), np.array([0.3, -0.1, 0.0]))
+    flat = flat_reference(model.parameters, Wave(), np.array([1.0, 1.04, 1.052]), load)
+    links = flat.links
+    u, direction, x = about_reference(flat.x, flat.u, flat.payload, links.on_payload, links.on_uavs, g, 0.25)
+    assert (u == (flat.u[:-1] + flat.u[1:]) / 2).all()
+    assert (direction == process.force_of_mass((flat.payload[2, :-1] + flat.payload[2, 1:]) / 2)).all()
+    assert (x[:, : layout.size] == flat.x).all()
+    assert (x[:, process.force] == links.on_payload).all()
+    assert (x[:, process.uav_force] == links.on_uavs[..., :2].reshape(3, -1)).all()
+    assert (x[:, process.mass] == 0.25).all()
 
 
 def test_noise_between_vehicles_goes_to_both_axes_of_the_force_on_each_that_is_measured():

@@ -190,7 +190,7 @@ def test_copy_learns_by_itself():
 
 
 def with_faults(folder, *faults):
-    mission = short_figure(folder, duration=8.0)
+    mission = short_figure(folder, duration=5.0, altitude=1.5)
     mission.write_text(mission.read_text() + "".join(f"\n[[fault]]\n{fault}\n" for fault in faults))
     return read_mission(mission)
 

@@ -1,9 +1,11 @@
-"""The hull in flat coordinates against the exact formation."""
+"""The hull in flat coordinates against the exact formation, and its distances against coal."""
 
+import coal
 import numpy as np
 import pytest
 import trimesh
 from avoidance_scene import hull_of
+from idc_controller.geometry.box import Wall
 from paper_system import system
 from plain_barrier import disc_support
 from plain_flatness import flat_forces
@@ -15,6 +17,7 @@ from idc_controller.safety.separation import PredictedObstacles, separations
 from idc_controller.trajectory.flatness import Load
 
 TEAMS = [3, 4, 6, 8]
+SHAPES = [Sphere(0.5), Pole(0.3, 12.0), Wall(size=(0.3, 4.0, 5.0), yaw=0.4)]
 
 
 def accelerations(rng, K=40, lateral=3.0, vertical=2.5):
@@ -89,6 +92,30 @@ def test_discs_and_payload_supports_bound_the_exact_hull(n):
     tilt = np.hypot(a[:, 0], a[:, 1]) / (parameters.g - a[:, 2])
     allowed = 0.5 * parameters.l.max() * (tilt**3 + tilt**2 * np.abs(normals[:, 2]))
     assert np.all(computed >= true - allowed - 1e-9)
+
+
+@pytest.mark.parametrize("n", TEAMS)
+@pytest.mark.parametrize("shape", SHAPES, ids=lambda s: s.kind)
+def test_distance_and_plane_are_those_of_the_convex_hulls(n, shape):
+    formation, rng, K, apart = Formation(system(n)), np.random.default_rng(20 + n), 8, 0
+    a, position = accelerations(rng, K), rng.normal((0.0, 0.0, -6.0), size=(K, 3))
+    away = rng.normal(size=(K, 3)) * [1.0, 1.0, 0.4]
+    offset = 3.2 * away / np.linalg.norm(away, axis=1, keepdims=True) + [0.0, 0.0, -1.5]
+    obstacle = PredictedObstacle("o", shape, position + offset, np.zeros(K))
+    (found,) = separations(formation, position, a, PredictedObstacles([obstacle]), 50.0)
+    for k, points in enumerate(formation.hull_points(a)):
+        there, here = coal.Transform3s(shape.rotation, offset[k]), coal.Transform3s.Identity()
+        request, result = coal.DistanceRequest(), coal.DistanceResult()
+        expected = coal.distance(formation.hull(points), here, shape.geometry(), there, request, result)
+        if expected > 1e-3:
+            apart += 1
+            assert found.distance[k] == pytest.approx(expected, abs=2e-3)
+            # A plane with this clearance between the bodies proves that they are no nearer.
+            normal = found.normals[k]
+            assert np.linalg.norm(normal) == pytest.approx(1.0)
+            gap = normal @ offset[k] - shape.support(-normal) - (points @ normal).max()
+            assert gap == pytest.approx(found.distance[k], abs=2e-3)
+    assert apart >= 3
 
 
 def test_only_near_obstacles_are_active():

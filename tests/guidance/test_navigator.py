@@ -158,8 +158,7 @@ def hanging(name, east, size, bottom=0.0, growth=0.0):
     return name, Wall(size), lambda t: np.tile(place, (len(t), 1)), growth
 
 
-@pytest.mark.parametrize("door", [0.8, 1.7, 2.6])
-@pytest.mark.parametrize("growth", [0.0, 0.05])
+@pytest.mark.parametrize(("door", "growth"), [(0.8, 0.0), (1.7, 0.05), (2.6, 0.0)])
 def test_narrowest_gap_is_named_in_reason_by_estimates(navigator, door, growth):
     """Two walls across the region of the search, with a door 2 m beside the mission; the growth is uncertainty."""
     edge = 100.0

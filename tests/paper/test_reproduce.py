@@ -105,7 +105,7 @@ def short_plan(quick):
 def test_command_fills_a_folder(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(command, "plan", short_plan)
     out = tmp_path / "deep" / "out"
-    assert main(["reproduce", "--quick", "--out", str(out), "--jobs", "2"]) == 0
+    assert main(["reproduce", "--quick", "--out", str(out), "--jobs", "1"]) == 0
     said = capsys.readouterr().out
     assert "index.html" in said
     assert "tracking project" in said

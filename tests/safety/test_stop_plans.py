@@ -47,7 +47,7 @@ def fly_among(poles):
     return flown.slack, min(flown.clearance(4).values())
 
 
-@pytest.mark.parametrize("seed", [2, 5, *(pytest.param(seed, marks=pytest.mark.long) for seed in (3, 9))])
+@pytest.mark.parametrize("seed", [5, *(pytest.param(seed, marks=pytest.mark.long) for seed in (2, 3, 9))])
 def test_payload_comes_to_rest_where_no_plan_keeps_the_margin(seed):
     slack, clearance = fly_among(dense_poles(seed))
     assert slack > 0.1

@@ -177,13 +177,6 @@ def test_stop_of_a_spline_never_ends_later_than_the_spline(steps, length):
     assert max(ends) <= spline.end
 
 
-def test_snap_is_continuous():
-    trajectory = planned([Leg([3, 0, -5], 1.5), Leg([3, 4, -6], 1.0)])
-    knots = trajectory.start + np.arange(1, 60) * smoothing_for(LIMITS).interval
-    step = trajectory.derivatives(knots + 1e-7)[4] - trajectory.derivatives(knots - 1e-7)[4]
-    assert np.abs(step).max() < 1e-4
-
-
 def test_straight_leg_is_flown_at_constant_speed():
     # Unequal legs, two of them shorter than the smoothing reaches.
     legs = [Leg([x, 0, -5], 1.5) for x in (7.0, 7.9, 8.3, 20.0, 30.0)]
