@@ -12,7 +12,7 @@ from plain_flatness import flat_forces
 
 from idc_controller.geometry.formation import Formation, outward_facets
 from idc_controller.geometry.obstacles import PredictedObstacle
-from idc_controller.geometry.shapes import Sphere
+from idc_controller.geometry.shapes import Pole, Sphere, Wall
 from idc_controller.safety.separation import PredictedObstacles, separations
 from idc_controller.trajectory.flatness import Load
 
