@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 import trimesh
 from avoidance_scene import hull_of
-from idc_controller.geometry.box import Wall
 from paper_system import system
 from plain_barrier import disc_support
 from plain_flatness import flat_forces
