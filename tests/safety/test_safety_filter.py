@@ -105,6 +105,28 @@ def test_filter_leaves_setpoints_unchanged():
     assert avoidance([]).safety.correct(0.0, u, estimate_at(0.0, np.zeros(3))) is u
 
 
+def test_number_of_qps_reported_is_that_of_those_solved(monkeypatch):
+    mission, avoided = straight(16.0), avoidance([sphere("s", (5.0, 0.3, -5.0))])
+    planner, solved = avoided.safety.planner, []
+    solve = planner.solve
+
+    def watched(start, ahead, planes, *others):
+        if planes:  # without, it is the return to the reference, no avoidance
+            solved.append(len(planes))
+        return solve(start, ahead, planes, *others)
+
+    monkeypatch.setattr(planner, "solve", watched)
+    counts, expected = [], 0
+    for k in range(80):
+        time, before = STEP * k, len(solved)
+        avoided.step(time, mission)
+        # A plan is kept for the length of a stage, and its report with it.
+        expected = len(solved) - before or (expected if avoided.safety.report.qp_count else 0)
+        assert avoided.safety.report.qp_count == expected, time
+        counts.append(expected)
+    assert len({*counts}) >= 3
+
+
 def plans(avoided, mission, steps):
     """Reference, trajectory before and trajectory from then on, at every new plan; the payload is on the trajectory."""
     before = None
