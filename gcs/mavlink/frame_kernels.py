@@ -177,8 +177,8 @@ def stamped_frames(data: Cells1, ends: Indices1, stamps: Indices1) -> Cells1:
             for byte in range(STAMP_BYTES):
                 records[count + byte] = (stamps[k] >> 8 * (STAMP_BYTES - 1 - byte)) & 0xFF
             count += STAMP_BYTES
-            for k in range(at, end):
-                records[count + k - at] = data[k]
+            for i in range(at, end):
+                records[count + i - at] = data[i]
             count += end - at
             at = end
     return records[:count]
