@@ -4,6 +4,7 @@ import gc
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -297,6 +298,24 @@ def test_flights_that_take_turns_have_the_bytes_of_the_commands_flights(tmp_path
             assert flight.result().summary["outcome"] == "completed"
     for number, (_, folder, _) in enumerate(commanded):
         assert same_bytes(folder, tmp_path / f"turns{number}")
+
+
+def resident_mb():
+    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20
+
+
+@pytest.mark.slow
+@pytest.mark.long
+def test_fifty_flights_in_any_order_have_the_bytes_of_flights_alone_and_take_no_memory(tmp_path, commanded):
+    memory = []
+    for number in np.random.default_rng(38).integers(len(commanded), size=50).tolist():
+        path, folder, _ = commanded[number]
+        assert gcs.fly(path, seed=5, run_dir=tmp_path / "flown").completed
+        assert same_bytes(tmp_path / "flown", folder)
+        shutil.rmtree(tmp_path / "flown")
+        memory.append(resident_mb())
+    # The allocator keeps some pages; what a flight has on record is 20 MB and more.
+    assert max(memory[40:]) < max(memory[:10]) + 10.0, memory
 
 
 def test_flight_that_is_over_takes_no_memory_when_the_next_begins(tmp_path):
