@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from gcs.config.flight_settings import DEFAULTS
-from gcs.mavlink.settings import PeerSettings
+from gcs.mavlink.settings import MissionTransferSettings, PeerSettings
 from idc_controller.settings import SettingsTable, Share, derived, setting
 from idc_controller.trajectory.settings import BrakingSettings
 
@@ -127,6 +127,8 @@ class StreamIntervals(SettingsTable):
     battery_status: float = 2.0  # s; BATTERY_STATUS
     vfr_hud: float = 0.5  # s; VFR_HUD
     vibration: float = 10.0  # s; VIBRATION of the autopilot and of the payload unit
+    mission_current: float = 1.0  # s; MISSION_CURRENT
+    mission_item_reached: float = 1.0  # s; MISSION_ITEM_REACHED, while it is repeated
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -137,3 +139,4 @@ class VehicleLinkSettings(PeerSettings):
     # s; a set-point older than the last by less was overtaken on the link; by more: its clock was set
     reordering_max: float = 1.0
     intervals: StreamIntervals = field(default_factory=StreamIntervals)
+    missions: MissionTransferSettings = field(default_factory=MissionTransferSettings)

@@ -61,6 +61,19 @@ class PeerSettings(SettingsTable):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class MissionTransferSettings(SettingsTable):
+    """The mission protocol of an aircraft: PX4's numbers."""
+
+    retry_interval: float = 0.25  # s; between requests of an item that does not come
+    timeout: float = 5.0  # s; without a message of the ground that uploads or downloads until its transfer ends
+    mission_items_max: int = 2000  # items of a mission
+    fence_items_max: int = 64  # items of a fence: vertices and circles
+    rally_points_max: int = 32  # rally points
+    partial_list_max: int = 64  # items sent for one MISSION_REQUEST_PARTIAL_LIST
+    downloads_max: int = 16  # grounds that download at once, each with the plan that it was promised
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class MavlinkSettings(SettingsTable):
     """All of the above."""
 

@@ -5,7 +5,6 @@ Meanings: https://mavlink.io/en/messages/common.html#mav_commands and
 https://mavlink.io/en/services/mission.html
 """
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -23,6 +22,18 @@ from gcs.mission.commands import (
     frame_name,
 )
 from gcs.mission.flow import check_flow
+from gcs.mission.item_parameters import (
+    DEFAULT_SPEED,
+    VERTICAL_SPEEDS,
+    check_radius,
+    delay,
+    repeats,
+    seconds,
+    speed_change,
+    take_off_altitude,
+    turns,
+    whole,
+)
 from gcs.mission.items import FARTHEST, ItemError, MissionItem, WaypointFile
 from gcs.mission.route import Climb, Descend, Go, Jump, Place, Return, Route, Speed, Stay, Step, Turn, Wait
 
@@ -81,7 +92,7 @@ def _number_items(items: tuple[MissionItem, ...], context: _Context, path: Path,
             context.indices_of_number.setdefault(item.number, []).append(index)
         if item.command == Command.JUMP_TAG:
             try:
-                context.indices_of_tag.setdefault(_whole(item, 0, "tag"), []).append(index)
+                context.indices_of_tag.setdefault(whole(item, 0, "tag"), []).append(index)
             except ItemError as problem:
                 problems.append(f"{path}: {item.label}: {problem}")
 
@@ -177,38 +188,20 @@ def _above_home(item: MissionItem, altitude: float, context: _Context) -> float:
     return altitude - context.file.home.altitude
 
 
-def _seconds(item: MissionItem) -> float:
-    seconds = item.params[0] or 0.0
-    if seconds < 0.0:
-        raise ItemError("param 1", f"{seconds:g} s is negative")
-    return seconds
-
-
-def _whole(item: MissionItem, index: int, name: str) -> int:
-    value = item.params[index]
-    if value is None or value != math.floor(value):
-        shown = "not given" if value is None else f"{value:g} is not a whole number"
-        raise ItemError(f"param {index + 1} ({name})", shown)
-    return int(value)
-
-
 # Commands -------------------------------------------------------------------------------------------------------
 
 
 def _go(item: MissionItem, context: _Context) -> Go:
-    return Go(item.label, _place(item, context), _seconds(item))
+    return Go(item.label, _place(item, context), seconds(item))
 
 
 def _loiter_turns(item: MissionItem, context: _Context) -> Step:
-    turns, radius = item.params[0], item.params[2]
-    if turns is None or not 0.0 < turns <= 1e6:
-        raise ItemError("param 1 (turns)", "not given" if turns is None else f"{turns:g} turns")
+    count, radius = turns(item), item.params[2]
     if not radius:
         context.note(item, f"no radius given: flown with {LOITER_RADIUS:g} m")
         radius = LOITER_RADIUS
-    if abs(radius) > FARTHEST:
-        raise ItemError("param 3 (radius)", f"{radius:g} m (limit {FARTHEST:g} m)")
-    return Turn(item.label, _place(item, context), abs(radius), turns, radius > 0.0)
+    check_radius(radius)
+    return Turn(item.label, _place(item, context), abs(radius), count, radius > 0.0)
 
 
 def _land(item: MissionItem, context: _Context) -> Step:
@@ -221,9 +214,7 @@ def _land(item: MissionItem, context: _Context) -> Step:
 
 
 def _take_off(item: MissionItem, context: _Context) -> Step:
-    altitude, resting = item.params[6], context.system.resting_altitude
-    if altitude is None:
-        raise ItemError("altitude", "not given: a take-off needs one")
+    altitude, resting = take_off_altitude(item), context.system.resting_altitude
     lowest = resting + context.system.guidance.navigator.ground_clearance
     if 0.0 <= _above_home(item, altitude, context) < lowest:
         reason = (
@@ -241,26 +232,19 @@ def _loiter_to_altitude(item: MissionItem, context: _Context) -> Step:
 
 
 def _delay(item: MissionItem, context: _Context) -> Step:
-    if item.params[0] is None or item.params[0] < 0.0:
-        raise ItemError("param 1", "not given: a delay in seconds is needed; a time of day is not supported")
-    return Wait(item.label, item.params[0])
+    return Wait(item.label, delay(item))
 
 
 def _change_speed(item: MissionItem, context: _Context) -> Step | None:
-    kind, speed = item.params[0] or 0.0, item.params[1]
-    if kind in (2.0, 3.0):
-        direction = "climb" if kind == 2.0 else "descent"
-        context.note(item, f"{direction} speed left out: the system file's motion limits hold")
+    kind, speed = speed_change(item)
+    if kind in VERTICAL_SPEEDS:
+        context.note(item, f"{VERTICAL_SPEEDS[kind]} speed left out: the system file's motion limits hold")
         return None
-    if kind not in (0.0, 1.0):
-        raise ItemError("param 1 (speed type)", f"{kind:g} is unknown")
-    if speed is None or speed == -1.0:
+    if speed is None:
         context.note(item, "no change of speed")
         return None
-    if speed == -2.0:
+    if speed == DEFAULT_SPEED:
         return Speed(item.label, None)
-    if speed <= 0.0:
-        raise ItemError("param 2 (speed)", f"{speed:g} m/s: the payload would never arrive")
     if speed > context.system.motion.speed_max:
         context.note(item, f"{speed:g} m/s capped to speed_max, {context.system.motion.speed_max:g} m/s")
         speed = context.system.motion.speed_max
@@ -268,20 +252,17 @@ def _change_speed(item: MissionItem, context: _Context) -> Step | None:
 
 
 def _jump(item: MissionItem, indices_of: dict[int, list[int]], name: str, context: _Context) -> Step | None:
-    target = _whole(item, 0, name)
-    repeats = _whole(item, 1, "repeats")
-    if repeats < -1:
-        raise ItemError("param 2 (repeats)", f"{repeats} is neither a number of times nor -1, endless")
+    target, times = whole(item, 0, name), repeats(item)
     targets = indices_of.get(target, [])
     if len(targets) != 1:
         is_home = target == 0 and name == "target"
         absent = "is home, not an item" if is_home else "there is no such item"
         reason = f"there are {len(targets)} such items" if targets else absent
         raise ItemError(f"param 1 ({name})", f"{target:g}: {reason}")
-    if repeats == 0:
+    if times == 0:
         context.note(item, "repeats 0 times: the jump is not taken")
         return None
-    return Jump(item.label, targets[0], None if repeats == -1 else repeats)
+    return Jump(item.label, targets[0], None if times == -1 else times)
 
 
 _COMMANDS: dict[int, Callable[[MissionItem, _Context], Step | None]] = {

@@ -23,6 +23,7 @@ class ItemError(ValueError):
 
     def __init__(self, field: str, reason: str) -> None:
         super().__init__(f"{field}: {reason}")
+        self.field = field
 
 
 @dataclass(frozen=True)

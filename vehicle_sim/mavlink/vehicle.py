@@ -14,6 +14,8 @@ from gcs.mavlink.messages import BROADCAST
 from gcs.mavlink.services.commands import CommandServer
 from gcs.mavlink.services.dispatcher import Dispatcher, Request
 from gcs.mavlink.services.link import LinkServices
+from gcs.mavlink.services.mission_store import MissionStore
+from gcs.mavlink.services.missions import MissionServer
 from gcs.mavlink.services.other_components import OtherComponents
 from gcs.mavlink.services.parameters import ParameterServer
 from gcs.mavlink.services.peer import Peer
@@ -26,6 +28,7 @@ from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.autopilot.vehicle_parameters import vehicle_parameters
 from vehicle_sim.mavlink.aircraft import CoupledAircraft
 from vehicle_sim.mavlink.control_owner import ControlOwner
+from vehicle_sim.mavlink.mission_plans import CoupledPlans
 from vehicle_sim.mavlink.setpoint_server import SetpointServer
 from vehicle_sim.mavlink.streams import default_intervals
 from vehicle_sim.mavlink.telemetry import Telemetry
@@ -57,11 +60,13 @@ class Vehicle:
         autopilot: AutopilotSettings = AutopilotSettings(),
         link: VehicleLinkSettings = VehicleLinkSettings(),
         arrays: OnboardArrays | None = None,
+        plans: MissionStore | None = None,
     ) -> None:
         """``system_id`` 1 .. 255; rates in Hz; ``boot_time`` (s) is the zero of every ``time_boot_ms``.
 
         ``clients``: ports of clients, and whether the payload unit's messages go there, too.
-        ``clock`` is what its clock shows at a time; ``arrays`` as in :class:`.Autopilot`.
+        ``clock`` is what its clock shows at a time; ``arrays`` as in :class:`.Autopilot`. ``plans``: mission, fence and
+        rally points of a vehicle that flies by itself; None: it carries a payload, and takes none.
         """
         intervals = default_intervals(link.intervals, 1.0 / telemetry_rate)
         self.system_id = system_id
@@ -88,15 +93,20 @@ class Vehicle:
         owner = ControlOwner(self.autopilot, link)
         self._setpoints = SetpointServer(self.autopilot, owner, clock)
         self._dispatcher = Dispatcher()
-        # A further protocol (missions, ...) registers its messages here.
+        # A further protocol registers its messages here.
         self._setpoints.register(self._dispatcher)
         LinkServices(clock).register(self._dispatcher)
+        self._missions = MissionServer(system_id, plans or CoupledPlans(), owner, self._peers, link.missions)
+        self._missions.register(self._dispatcher)
+        self.telemetry.builders.update(self._missions.builders)
         streams, of_payload_unit = (
             StreamRequests(component, self.telemetry, owner, link)
             for component in (px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT)
         )
         aircraft = CoupledAircraft(self.autopilot, owner)
-        CommandServer(aircraft, owner, self.telemetry, streams).register(self._dispatcher)
+        commands = CommandServer(aircraft, owner, self.telemetry, streams)
+        commands.register(self._dispatcher)
+        commands.add(mavlink.MAV_CMD_DO_SET_MISSION_CURRENT, self._missions.do_set_mission_current)
         self._other_components = OtherComponents(own, payload_unit, of_payload_unit)
         ParameterServer(self.parameters, owner).register(self._dispatcher)
 
@@ -166,6 +176,7 @@ class Vehicle:
             self._latest = now
         if self.autopilot.changes != self._sent_changes or self.autopilot.state.notices:
             self.send_changes()
+        self._missions.run(now)
         return self._peers.datagrams_to_send(self.telemetry, now)
 
     @property
@@ -175,7 +186,7 @@ class Vehicle:
 
     def next_timer(self) -> float | None:
         """Return when :meth:`datagrams_to_send` has something to do (s; in the past: at once), None: never."""
-        due = self._peers.next_due
+        due = min(self._peers.next_due, self._missions.next_due)
         if due == -math.inf:
             return self._latest if math.isfinite(self._latest) else 0.0
         return due if due < math.inf else None

@@ -44,6 +44,10 @@ class CommandServer:
         dispatcher.register(mavlink.MAVLink_command_int_message, self._on_command)
         dispatcher.register(mavlink.MAVLink_set_mode_message, self._on_set_mode)
 
+    def add(self, command: int, run: Callable[[Command, Request], Answer]) -> None:
+        """Carry out a command of another service."""
+        self._commands[command] = run
+
     def _on_command(self, message: Command, request: Request) -> None:
         run = self._commands.get(message.command)
         if message.command not in _HARMLESS and self._control.is_stranger(request.sender, request.now):

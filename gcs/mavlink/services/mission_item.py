@@ -1,6 +1,25 @@
 """An item of a mission, a fence or a set of rally points, as MISSION_ITEM_INT carries it."""
 
+import struct
+import zlib
+from collections.abc import Iterable
+from enum import IntEnum
 from typing import NamedTuple
+
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+
+UNKNOWN = 2**31 - 1
+"""``x`` or ``y`` that is not given, as NaN is for the other parameters."""
+_NONE_INVERTED = 0xFFFFFFFF
+_CRC_OF_ITEM = struct.Struct("<BHB4fiif")
+
+
+class PlanType(IntEnum):
+    """MAV_MISSION_TYPE of a plan."""
+
+    MISSION = mavlink.MAV_MISSION_TYPE_MISSION
+    FENCE = mavlink.MAV_MISSION_TYPE_FENCE
+    RALLY = mavlink.MAV_MISSION_TYPE_RALLY
 
 
 class MissionItem(NamedTuple):
@@ -15,8 +34,20 @@ class MissionItem(NamedTuple):
     param3: float
     param4: float
     x: int
-    """Latitude (1e-7 deg) in a global frame."""
+    """Latitude (1e-7 deg) in a global frame, :data:`UNKNOWN` if it is not given."""
     y: int
-    """Longitude (1e-7 deg) in a global frame."""
+    """Longitude (1e-7 deg) in a global frame, :data:`UNKNOWN` if it is not given."""
     z: float
     """Altitude (m), above mean sea level or above home by the frame."""
+
+
+def opaque_id(items: Iterable[MissionItem]) -> int:
+    """Return the id of a plan by which a ground sees that it has changed; 0 without items.
+
+    PX4's: the CRC32 of MAVLink FTP (initial value 0, no final inversion) over frame, command, autocontinue and the
+    seven parameters of each item, in order.
+    """
+    checksum = _NONE_INVERTED
+    for item in items:
+        checksum = zlib.crc32(_CRC_OF_ITEM.pack(*item), checksum)
+    return checksum ^ _NONE_INVERTED
