@@ -183,7 +183,7 @@ class MissionPlans:
         except ItemError as error:
             return _refusal(error, plan_type.name.capitalize())
         identity = opaque_id(items)
-        if items != self._plans[plan_type] or not items:
+        if identity != self._ids[plan_type] or not items:
             self._plans[plan_type], self._ids[plan_type] = items, identity
             self.changes += 1
             if plan_type == PlanType.MISSION:

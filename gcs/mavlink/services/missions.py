@@ -3,6 +3,7 @@
 https://mavlink.io/en/services/mission.html
 """
 
+import math
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -182,8 +183,8 @@ class MissionServer:
 
     @property
     def next_due(self) -> float:
-        """Time at which :meth:`run` has something to do (s), inf: none."""
-        return self._upload.next_due
+        """Time at which :meth:`run` has something to do (s); -inf: at once, inf: never."""
+        return self._upload.next_due if self._store.changes == self._sent_changes else -math.inf
 
     def run(self, now: float) -> None:
         """Send what has changed, and repeat requests of an upload; ``now`` in s."""
