@@ -351,8 +351,10 @@ def test_mission_far_from_home_is_taken_and_cannot_be_started(free: FreeBench) -
     assert free.upload([waypoint(x=-353632620, y=1491652370)]) == ACCEPTED
     assert free.plans.problem is not None and "km from home" in free.plans.problem
     assert "cannot be started" in texts(free.inbox[GROUND])
-    assert free.plans.progress().state == m.MISSION_STATE_NO_MISSION
+    assert free.plans.progress().state == m.MISSION_STATE_NO_MISSION and free.flight.items == ()
+    assert "km from home" in free.plans.set_current(0, 0.0).text
     free.upload(PLAN)
+    assert same(free.flight.items, PLAN)
     assert free.plans.problem is None and free.plans.progress().state == m.MISSION_STATE_NOT_STARTED
 
 
@@ -392,48 +394,47 @@ def test_current_item_is_streamed_and_sent_on_change(free: FreeBench) -> None:
     assert len(currents(free)) == 3
     free.upload(PLAN)
     assert currents(free)[-1] == (0, 5, m.MISSION_STATE_NOT_STARTED, 2)
-    free.plans.report(is_flown=True, is_complete=False)
-    free.plans.fly_to(1)
+    free.flight.mission_active = True
+    free.flight.current_item = 1
     free.collect()
     assert currents(free)[-1] == (1, 5, m.MISSION_STATE_ACTIVE, 1)
-    free.plans.report(is_flown=False, is_complete=False)
+    free.flight.mission_active = False
     free.collect()
     assert currents(free)[-1] == (1, 5, m.MISSION_STATE_PAUSED, 2)
-    free.plans.report(is_flown=False, is_complete=True)
+    free.flight.mission_finished = True
     free.collect()
     assert currents(free)[-1] == (1, 5, m.MISSION_STATE_COMPLETE, 2)
 
 
 def test_ground_chooses_the_current_item(free: FreeBench) -> None:
     free.upload(PLAN)
-    revision = free.plans.revision
     free.send(m.MAVLink_mission_set_current_message(1, 1, 3))
     free.collect()
-    assert currents(free)[-1][0] == free.plans.current == 3 and free.plans.revision == revision + 1
+    assert currents(free)[-1][0] == free.flight.current_item == 3
     free.send(m.MAVLink_mission_set_current_message(1, 1, 5))
     free.collect()
     assert currents(free)[-1][0] == free.plans.current == 3 and "5 of 5" in texts(free.inbox[GROUND])
 
 
 @pytest.mark.parametrize(
-    ("parameters", "result", "current", "resets"),
+    ("parameters", "result", "current", "missions"),
     [
-        ((1, 0), 0, 1, 0),
-        ((4, 1), 0, 4, 1),
-        ((-1, 1), 0, 2, 1),
-        ((5, 0), 2, 2, 0),
-        ((math.nan,), 2, 2, 0),
-        ((1.5,), 2, 2, 0),
+        ((1, 0), 0, 1, 1),
+        ((4, 1), 0, 4, 2),
+        ((-1, 1), 0, 2, 2),
+        ((5, 0), 2, 2, 1),
+        ((math.nan,), 2, 2, 1),
+        ((1.5,), 2, 2, 1),
     ],
 )
 def test_current_item_is_chosen_by_command(
-    free: FreeBench, parameters: Any, result: int, current: int, resets: int
+    free: FreeBench, parameters: Any, result: int, current: int, missions: int
 ) -> None:
     free.upload(PLAN)
-    free.plans.fly_to(2)
+    free.flight.current_item = 2
     answers = free.answers(command(m.MAV_CMD_DO_SET_MISSION_CURRENT, *parameters))
     assert [found.result for found in answers if found.get_type() == "COMMAND_ACK"] == [result]
-    assert (free.plans.current, free.plans.resets) == (current, resets)
+    assert (free.plans.current, free.flight.taken) == (current, missions)  # anew: jumps are counted again
 
 
 def test_item_marked_as_current_is_flown_to_first(free: FreeBench) -> None:
@@ -447,16 +448,15 @@ def test_item_marked_as_current_is_flown_to_first(free: FreeBench) -> None:
 
 def test_same_plan_once_more_does_not_begin_the_mission_anew(free: FreeBench) -> None:
     free.upload(PLAN)
-    free.plans.fly_to(3)
-    revision = free.plans.revision
+    free.flight.current_item = 3
     assert free.upload(PLAN) == ACCEPTED
-    assert (free.plans.current, free.plans.revision) == (3, revision)
+    assert (free.plans.current, free.flight.taken) == (3, 1)
 
 
 def test_reached_items_are_sent_at_once_and_repeated(free: FreeBench) -> None:
     free.upload(PLAN)
-    free.plans.reached(0)
-    free.plans.reached(1)
+    free.flight.on_reached(0)
+    free.flight.on_reached(1)
     assert [found.seq for found in free.wait(0.01)] == [0, 1]
     again = [found.seq for found in free.wait(30.0)]
     assert again == [1] * 10

@@ -9,6 +9,8 @@ from typing import Any
 import pymavlink.dialects.v20.ardupilotmega as m
 from vehicle_bench import GROUND, Bench
 
+from gcs.mavlink.services.answer import ACCEPTED as ACCEPTED_COMMAND
+from gcs.mavlink.services.answer import Answer
 from gcs.mavlink.services.mission_item import MissionItem, PlanType
 from gcs.mission.model import DEFAULT_HOME
 from vehicle_sim.mavlink.mission_plans import MissionPlans
@@ -160,11 +162,34 @@ class Downloader:
         return m.MAVLink_mission_request_int_message(1, 1, len(self.items), self.plan_type)
 
 
+class Flight:
+    """What flies a mission, in place of an autopilot."""
+
+    def __init__(self) -> None:
+        self.items: tuple[MissionItem, ...] = ()
+        self.current_item = 0
+        self.mission_finished = False
+        self.mission_active = False
+        self.taken = 0
+        """Missions that were handed over."""
+
+    def take_mission(self, items: Any, current: int, on_reached: Any) -> Answer:
+        self.items, self.current_item, self.on_reached = tuple(items), current, on_reached
+        self.mission_finished = False
+        self.taken += 1
+        return ACCEPTED_COMMAND
+
+    def set_current_item(self, index: int, now: float) -> Answer:
+        self.current_item = index
+        return ACCEPTED_COMMAND
+
+
 class FreeBench(Bench):
     """A vehicle with plans of its own, at rest."""
 
     def __init__(self) -> None:
-        self.plans = MissionPlans(DEFAULT_HOME)
+        self.flight = Flight()
+        self.plans = MissionPlans(DEFAULT_HOME, self.flight)
         super().__init__(plans=self.plans)
         self.received: list[Any] = []
         self.time = 0.0

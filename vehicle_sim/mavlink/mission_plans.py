@@ -1,10 +1,12 @@
 """Mission, fence and rally points of a vehicle: those of one that flies by itself, and none of one on a payload."""
 
 import math
+from collections.abc import Callable, Sequence
+from typing import Protocol
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
-from gcs.mavlink.services.answer import ACCEPTED, Answer, denied
+from gcs.mavlink.services.answer import Answer, denied
 from gcs.mavlink.services.mission_item import UNKNOWN, MissionItem, PlanType, opaque_id
 from gcs.mavlink.services.mission_store import TAKEN, MissionAnswer, MissionProgress
 from gcs.mission.commands import Frame
@@ -23,7 +25,8 @@ from vehicle_sim.autopilot.modes import team_only
 
 _REACHED_REPEATS = 10
 """PX4 says so often again which item was reached."""
-_MODE_UNKNOWN, _MODE_ACTIVE, _MODE_SUSPENDED = 0, 1, 2
+_MODE_ACTIVE, _MODE_SUSPENDED = 1, 2
+"""Whether a mode is active that flies the mission: ``mission_mode`` of MISSION_CURRENT."""
 _RESULTS = {
     "frame": mavlink.MAV_MISSION_UNSUPPORTED_FRAME,
     "command": mavlink.MAV_MISSION_UNSUPPORTED,
@@ -43,7 +46,9 @@ _CHECKS = {
 class CoupledPlans:
     """No plans: a vehicle on a payload flies no mission by itself."""
 
-    changes = 0
+    def changes(self) -> int:
+        """Return 0: nothing changes."""
+        return 0
 
     def items_of(self, plan_type: PlanType) -> tuple[MissionItem, ...]:
         """Return nothing."""
@@ -65,7 +70,7 @@ class CoupledPlans:
         """Refuse."""
         return self.begin(plan_type)
 
-    def set_current(self, number: int, *, reset: bool = False) -> Answer:
+    def set_current(self, number: int, now: float, *, reset: bool = False) -> Answer:
         """Refuse."""
         return team_only("Mission item")
 
@@ -82,34 +87,44 @@ class CoupledPlans:
         return None
 
 
+class MissionFlight(Protocol):
+    """What flies a mission."""
+
+    def take_mission(self, items: Sequence[MissionItem], current: int, on_reached: Callable[[int], None]) -> Answer:
+        """Have another mission, of which ``current`` is flown first; ``on_reached`` is called with each item done."""
+
+    def set_current_item(self, index: int, now: float) -> Answer:
+        """Go on with item ``index``."""
+
+    @property
+    def current_item(self) -> int:
+        """The item of the mission that is flown, or will be."""
+
+    @property
+    def mission_finished(self) -> bool:
+        """Whether all items have been done."""
+
+    @property
+    def mission_active(self) -> bool:
+        """Whether the mode that flies the mission is active."""
+
+
 class MissionPlans:
-    """Plans of a vehicle that flies by itself.
+    """Plans of a vehicle that flies by itself: what the ground has uploaded, and how far the flight has come."""
 
-    Its flight reads :attr:`items` and :attr:`current`, and calls :meth:`fly_to`, :meth:`reached` and :meth:`report`;
-    when :attr:`revision` has changed the ground has uploaded another mission or chosen another item.
-    """
-
-    def __init__(self, home: Home) -> None:
-        """``home`` is that from which the distances of the items are limited."""
+    def __init__(self, home: Home, flight: MissionFlight) -> None:
+        """``home`` is that from which the distances of the items are limited; ``flight`` gets each new mission."""
         self._home = FileHome(home.latitude, home.longitude, home.altitude)
+        self._flight = flight
         self._plans: dict[PlanType, tuple[MissionItem, ...]] = dict.fromkeys(PlanType, ())
         self._ids = dict.fromkeys(PlanType, 0)
         self._reached: list[int] = []
         self._reached_left = 0
         self._last_reached: int | None = None
-        self._is_flown = False
-        self._is_complete = False
-        self.current = 0
-        """Number of the item that is flown to."""
-        self.revision = 0
-        """Number of missions uploaded and items chosen by the ground."""
-        self.resets = 0
-        """Number of times that the ground has had jumps counted anew."""
+        self._changes = 0
+        self._seen = self._flown()
         self.problem: str | None = None
         """Reason why the mission cannot be started; None if it can, or there is none."""
-        self.changes = 0
-
-    # The flight's side
 
     @property
     def items(self) -> tuple[MissionItem, ...]:
@@ -126,23 +141,19 @@ class MissionPlans:
         """The rally points."""
         return self._plans[PlanType.RALLY]
 
-    def fly_to(self, number: int) -> None:
-        """Make item ``number`` the current one, in the course of the flight."""
-        if number != self.current:
-            self.current = number
-            self.changes += 1
+    @property
+    def current(self) -> int:
+        """Number of the item that is flown to."""
+        return self._flight.current_item
 
     def reached(self, number: int) -> None:
         """Send that item ``number`` was reached."""
         self._reached.append(number)
         self._last_reached, self._reached_left = number, _REACHED_REPEATS
-        self.changes += 1
+        self._changes += 1
 
-    def report(self, *, is_flown: bool, is_complete: bool) -> None:
-        """Report whether the mode that flies the mission is active, and whether the mission is complete."""
-        if (is_flown, is_complete) != (self._is_flown, self._is_complete):
-            self._is_flown, self._is_complete = is_flown, is_complete
-            self.changes += 1
+    def _flown(self) -> tuple[int, bool, bool]:
+        return self._flight.current_item, self._flight.mission_finished, self._flight.mission_active
 
     # The ground's side
 
@@ -183,36 +194,46 @@ class MissionPlans:
         except ItemError as error:
             return _refusal(error, plan_type.name.capitalize())
         identity = opaque_id(items)
-        if identity != self._ids[plan_type] or not items:
-            self._plans[plan_type], self._ids[plan_type] = items, identity
-            self.changes += 1
-            if plan_type == PlanType.MISSION:
-                self.problem = problem
-                self._begin_at(current)
+        if identity == self._ids[plan_type] and items:
+            return TAKEN
+        if plan_type == PlanType.MISSION:
+            answer = self._hand_over(() if problem else items, current)
+            if answer.result != mavlink.MAV_RESULT_ACCEPTED:
+                return MissionAnswer(mavlink.MAV_MISSION_ERROR, answer.text)
+            self.problem = problem
+        self._plans[plan_type], self._ids[plan_type] = items, identity
+        self._changes += 1
         return MissionAnswer(TAKEN.result, f"Mission cannot be started: {problem}" if problem else "")
 
-    def set_current(self, number: int, *, reset: bool = False) -> Answer:
+    def set_current(self, number: int, now: float, *, reset: bool = False) -> Answer:
         """Choose the item to be flown to."""
         if not number < len(self.items):
             return denied(f"Mission item denied: {number} of {len(self.items)} items")
-        self.resets += reset
-        self._begin_at(number)
-        return ACCEPTED
+        if self.problem:
+            return denied(f"Mission item denied: {self.problem}")
+        return self._hand_over(self.items, number) if reset else self._flight.set_current_item(number, now)
+
+    def changes(self) -> int:
+        """Return a number that rises with every change."""
+        if (flown := self._flown()) != self._seen:
+            self._seen = flown
+            self._changes += 1
+        return self._changes
 
     def progress(self) -> MissionProgress:
         """Return number and state of the mission, as PX4 names them."""
-        mode = _MODE_ACTIVE if self._is_flown else _MODE_SUSPENDED
-        if not self.items or self.problem is not None:
+        current, is_finished, is_active = self._flown()
+        if not self.items or self.problem:
             state = mavlink.MISSION_STATE_NO_MISSION
-        elif self._is_complete:
+        elif is_finished:
             state = mavlink.MISSION_STATE_COMPLETE
-        elif self._is_flown:
+        elif is_active:
             state = mavlink.MISSION_STATE_ACTIVE
-        elif self._last_reached is not None or self.current > 0:
+        elif self._last_reached is not None or current > 0:
             state = mavlink.MISSION_STATE_PAUSED
         else:
             state = mavlink.MISSION_STATE_NOT_STARTED
-        return MissionProgress(self.current, len(self.items), state, mode)
+        return MissionProgress(current, len(self.items), state, _MODE_ACTIVE if is_active else _MODE_SUSPENDED)
 
     def take_reached(self) -> tuple[int, ...]:
         """Return the items reached since the last call."""
@@ -226,12 +247,11 @@ class MissionPlans:
         self._reached_left -= 1
         return self._last_reached
 
-    def _begin_at(self, number: int) -> None:
-        self.current = number
-        self._is_complete = False
+    def _hand_over(self, items: tuple[MissionItem, ...], current: int) -> Answer:
+        """Have a mission flown from item ``current`` on."""
+        self._reached.clear()
         self._last_reached = None
-        self.revision += 1
-        self.changes += 1
+        return self._flight.take_mission(items, current, self.reached)
 
 
 def _as_in_file(item: MissionItem, number: int) -> FileItem:

@@ -50,10 +50,9 @@ class MissionStore(Protocol):
     def accept(self, plan_type: PlanType, items: tuple[MissionItem, ...], current: int) -> MissionAnswer:
         """Take over a whole plan whose items were checked, the mission at item ``current``; or refuse all of it."""
 
-    def set_current(self, number: int, *, reset: bool = False) -> Answer:
+    def set_current(self, number: int, now: float, *, reset: bool = False) -> Answer:
         """Fly to item ``number`` next; ``reset``: count jumps anew, and fly a completed mission again."""
 
-    @property
     def changes(self) -> int:
         """Return a number that rises when the progress or a plan has changed, or an item was reached."""
 

@@ -51,7 +51,7 @@ class MissionServer:
             PlanType.FENCE: settings.fence_items_max,
             PlanType.RALLY: settings.rally_points_max,
         }
-        self._sent_changes = store.changes
+        self._sent_changes = store.changes()
 
     # Messages
 
@@ -137,7 +137,7 @@ class MissionServer:
         if self._control.is_stranger(request.sender, request.now):
             answer = denied("Mission item denied: another ground station is in control")
         else:
-            answer = self._store.set_current(message.seq)
+            answer = self._store.set_current(message.seq, request.now)
         if answer.text:
             request.peer.send_statustext(answer.text)
         request.peer.reply_packed(self._current())  # the answer, be it the old one
@@ -147,7 +147,7 @@ class MissionServer:
         number = self._store.progress().current if message.param1 == -1.0 else whole(message.param1, 1 << 16)
         if number is None:
             return denied(f"Mission item denied: {message.param1:g} is no item")
-        return self._store.set_current(number, reset=message.param2 == 1.0)
+        return self._store.set_current(number, request.now, reset=message.param2 == 1.0)
 
     # Changes
 
@@ -184,13 +184,13 @@ class MissionServer:
     @property
     def next_due(self) -> float:
         """Time at which :meth:`run` has something to do (s); -inf: at once, inf: never."""
-        return self._upload.next_due if self._store.changes == self._sent_changes else -math.inf
+        return self._upload.next_due if self._store.changes() == self._sent_changes else -math.inf
 
     def run(self, now: float) -> None:
         """Send what has changed, and repeat requests of an upload; ``now`` in s."""
         self._upload.run(now)
-        if self._store.changes != self._sent_changes:
-            self._sent_changes = self._store.changes
+        if (changes := self._store.changes()) != self._sent_changes:
+            self._sent_changes = changes
             self._peers.repeat(mavlink.MAVLINK_MSG_ID_MISSION_CURRENT)
             for number in self._store.take_reached():
                 for peer in self._peers:
