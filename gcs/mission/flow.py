@@ -1,7 +1,7 @@
 """Control flow of a route: loops without a waypoint, steps never reached, legs that cannot be flown."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from graphlib import CycleError, TopologicalSorter
 from itertools import islice
 from operator import itemgetter
@@ -77,11 +77,19 @@ def _reached(steps: tuple[Step, ...], through_landing: bool) -> set[int]:
 def _loop_without_waypoint(steps: tuple[Step, ...]) -> Jump | None:
     """Return the jump that closes a loop in which nothing is flown; None if there is none."""
     idle = [i for i, step in enumerate(steps) if not isinstance(step, WAYPOINTS)]
+    if (loop := loop_in({i: _next(steps, i, through_landing=True) for i in idle})) is None:
+        return None
+    jumps = [(i, step) for i in loop if isinstance(step := steps[i], Jump) and step.target <= i]
+    return max(jumps, key=itemgetter(0))[1]
+
+
+def loop_in(following: Mapping[int, Sequence[int]]) -> list[int] | None:
+    """Return the items of a loop in which nothing is flown, by the items that may follow each that is not flown."""
     try:
-        TopologicalSorter({i: _next(steps, i, through_landing=True) for i in idle}).prepare()
+        TopologicalSorter(following).prepare()
     except CycleError as error:
-        loop = [(i, steps[i]) for i in error.args[1]]
-        return max(((i, step) for i, step in loop if isinstance(step, Jump) and step.target <= i), key=itemgetter(0))[1]
+        loop: list[int] = error.args[1]
+        return loop
     return None
 
 

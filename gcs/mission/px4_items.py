@@ -14,6 +14,7 @@ from gcs.mission.commands import (
     Frame,
     frame_name,
 )
+from gcs.mission.flow import loop_in
 from gcs.mission.item_parameters import (
     check_numbers,
     check_place,
@@ -126,14 +127,20 @@ def check_rally_point(item: MissionItem) -> None:
 
 def check_jumps(items: Sequence[MissionItem]) -> None:
     """Refuse jumps out of the mission, and those in a loop in which nothing is flown. Raises :class:`ItemError`."""
+    following: dict[int, list[int]] = {}
     for number, item in enumerate(items):
-        if item.command != Command.DO_JUMP:
+        if item.command in FLOWN_TO or item.command == Command.NAV_RETURN_TO_LAUNCH:
             continue
-        target = whole(item, 0, "target")
-        if not 0 <= target < len(items):
-            raise ItemError("param 1 (target)", f"{target}: there is no such item")
-        if repeats(item) != 0 and _returns_without_flight(items, number, target):
-            raise ItemError("param 1 (target)", f"{target}: a loop without a waypoint in it would never end")
+        following[number] = [number + 1]
+        if item.command == Command.DO_JUMP:
+            target = whole(item, 0, "target")
+            if not 0 <= target < len(items):
+                raise ItemError("param 1 (target)", f"{target}: there is no such item")
+            if repeats(item) != 0:
+                following[number].append(target)
+    if (loop := loop_in(following)) is not None:
+        jump = max(number for number in loop if items[number].command == Command.DO_JUMP)
+        raise ItemError("param 1 (target)", f"{items[jump].label}: a loop without a waypoint in it would never end")
 
 
 def check_fence(items: Sequence[MissionItem]) -> None:
@@ -175,18 +182,3 @@ def _check_given_place(item: MissionItem) -> None:
     check_place(item)
     if item.params[4] is None:
         raise ItemError("latitude", "not given")
-
-
-def _returns_without_flight(items: Sequence[MissionItem], jump: int, target: int) -> bool:
-    """Return whether items from ``target`` to the jump back there take no time."""
-    number, seen = target, set[int]()
-    while number not in seen and number < len(items):
-        if number == jump:
-            return True
-        seen.add(number)
-        item = items[number]
-        if item.command in FLOWN_TO or item.command == Command.NAV_RETURN_TO_LAUNCH:
-            return False
-        follows_jump = item.command == Command.DO_JUMP and repeats(item) != 0
-        number = whole(item, 0, "target") if follows_jump else number + 1
-    return number in seen

@@ -324,6 +324,29 @@ def test_item_that_px4_takes_is_taken(free: FreeBench, item: Any) -> None:
 
 
 @pytest.mark.parametrize(
+    "jumps",
+    [
+        [placeless(m.MAV_CMD_DO_JUMP, 1, 2)],
+        [
+            placeless(m.MAV_CMD_DO_CHANGE_SPEED, 1, 3),
+            placeless(m.MAV_CMD_NAV_DELAY, 1),
+            placeless(m.MAV_CMD_DO_JUMP, 1, -1),
+        ],
+        [placeless(m.MAV_CMD_DO_JUMP, 2, 1), placeless(m.MAV_CMD_DO_JUMP, 1, 1)],
+        [placeless(m.MAV_CMD_DO_JUMP, 1 + (i + 1) % 1900, 1) for i in range(1900)],
+    ],
+)
+def test_loop_without_a_waypoint_is_refused(free: FreeBench, jumps: Any) -> None:
+    assert free.upload([waypoint(), *jumps]) == PARAM + 1
+    assert "never end" in texts(free.inbox[GROUND])
+
+
+@pytest.mark.parametrize("item", [placeless(m.MAV_CMD_DO_JUMP, 0, -1), placeless(m.MAV_CMD_DO_JUMP, 1, 0)])
+def test_loop_with_a_waypoint_and_a_jump_that_is_never_taken_are_accepted(free: FreeBench, item: Any) -> None:
+    assert free.upload([waypoint(), item]) == ACCEPTED
+
+
+@pytest.mark.parametrize(
     ("items", "result"),
     [
         (corners(5001)[:2], PARAM + 1),
