@@ -54,8 +54,9 @@ DONE = frozenset(
 )
 """Commands without a place that a vehicle carries out."""
 
-_ROI = frozenset({80, 195, 201})
-"""Regions of interest that are left out, with a place."""
+_ROI = frozenset({80, 201})
+_ROI_LOCATION = 195
+"""Regions of interest that are left out; the last one has a place always."""
 _OTHER_DEVICES = frozenset(
     {
         187, 189, 196, 197, 200, 203, 204, 205, 206, 211, 214, 260, 530, 531, 532, 534, 1000, 1001, 2000, 2001, 2003,
@@ -63,10 +64,12 @@ _OTHER_DEVICES = frozenset(
     }
 )  # fmt: skip
 """Commands to devices that are left out, and marks, without a place."""
-LEFT_OUT_HERE = frozenset(LEFT_OUT) & (_ROI | _OTHER_DEVICES)
+LEFT_OUT_HERE = frozenset(LEFT_OUT) & (_ROI | {_ROI_LOCATION} | _OTHER_DEVICES)
 """Commands that are taken, as by PX4, and that do nothing here."""
 
-_COMMANDS = dict.fromkeys(PLACED_FRAMES, FLOWN_TO | _ROI) | {Frame.MISSION: DONE | _OTHER_DEVICES | _ROI}
+_COMMANDS = dict.fromkeys(PLACED_FRAMES, FLOWN_TO | _ROI | {_ROI_LOCATION}) | {
+    Frame.MISSION: DONE | _OTHER_DEVICES | _ROI
+}
 """Commands by the frame that PX4 takes them in."""
 
 VERTICES = frozenset({5001, 5002})

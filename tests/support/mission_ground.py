@@ -9,6 +9,7 @@ from typing import Any
 import pymavlink.dialects.v20.ardupilotmega as m
 from vehicle_bench import GROUND, Bench
 
+from gcs.config.vehicle_settings import VehicleLinkSettings
 from gcs.mavlink.services.answer import ACCEPTED as ACCEPTED_COMMAND
 from gcs.mavlink.services.answer import Answer
 from gcs.mavlink.services.mission_item import MissionItem, PlanType
@@ -241,3 +242,30 @@ class FreeBench(Bench):
             waiting = [new for found in self.answers(waiting[0]) for new in downloader.take(found, self.now)]
         assert downloader.is_done
         return downloader.items
+
+
+MISSION, FENCE, RALLY = PlanType
+LIMITS = VehicleLinkSettings().missions
+PLAN = [
+    waypoint(0, command=m.MAV_CMD_NAV_TAKEOFF),
+    waypoint(1),
+    placeless(m.MAV_CMD_DO_CHANGE_SPEED, 1, 4.0),
+    waypoint(2),
+    placeless(m.MAV_CMD_NAV_RETURN_TO_LAUNCH),
+]
+
+
+def count(number: int, plan_type: int = MISSION, target: int = 1) -> Any:
+    return m.MAVLink_mission_count_message(target, 1, number, plan_type)
+
+
+def request_list(plan_type: int = MISSION) -> Any:
+    return m.MAVLink_mission_request_list_message(1, 1, plan_type)
+
+
+def results(messages: list[Any]) -> list[int]:
+    return [found.type for found in messages if found.get_type() == "MISSION_ACK"]
+
+
+def texts(messages: list[Any]) -> str:
+    return "".join(found.text for found in messages if found.get_type() == "STATUSTEXT")
