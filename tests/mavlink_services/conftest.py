@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pymavlink.dialects.v20.ardupilotmega as m
 import pytest
-from mission_ground import FreeBench
+from mission_ground import MissionBench
 
 
 @pytest.fixture
-def free() -> FreeBench:
+def free() -> MissionBench:
     """A vehicle with plans of its own, and a ground that it has heard."""
-    bench = FreeBench()
+    bench = MissionBench()
     bench.send(m.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3))
     return bench

@@ -7,7 +7,7 @@ from typing import Any
 import pymavlink.dialects.v20.ardupilotmega as m
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mission_ground import ACCEPTED, RETRY, TRIES, Downloader, FreeBench, Uploader, same, waypoint
+from mission_ground import ACCEPTED, RETRY, TRIES, Downloader, MissionBench, Uploader, same, waypoint
 from vehicle_bench import GROUND, STRANGER
 
 from gcs.config.vehicle_settings import VehicleLinkSettings
@@ -33,7 +33,7 @@ class LossyLink:
     """A free vehicle and the datagrams on their way to and from it; when the fates are used up all arrive."""
 
     def __init__(self, fates: list[list[float]]) -> None:
-        self.bench = FreeBench()
+        self.bench = MissionBench()
         self.fates = iter(fates)
         self.to_vehicle: list[tuple[float, bytes, Any]] = []
         self.to_ground: list[tuple[float, bytes, Any]] = []
@@ -147,7 +147,7 @@ RANDOM = st.builds(
 @settings(max_examples=40, deadline=None)
 @given(st.lists(st.tuples(RANDOM, st.integers(1, 3), st.floats(0.0, 1.0)), max_size=40))
 def test_any_sequence_of_requests_is_answered_and_leaves_the_plan(messages: list[tuple[Any, int, float]]) -> None:
-    bench = FreeBench()
+    bench = MissionBench()
     bench.plans.accept(PlanType.MISSION, tuple(OLD), 0)
     for message, component, wait in messages:
         if message.get_type() == "MISSION_COUNT" and message.count == 0:

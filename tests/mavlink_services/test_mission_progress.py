@@ -13,7 +13,7 @@ from mission_ground import (
     MISSION,
     PLAN,
     RALLY,
-    FreeBench,
+    MissionBench,
     corners,
     count,
     ids_in,
@@ -28,7 +28,7 @@ from vehicle_bench import GROUND, command
 from gcs.mavlink.services.mission_item import opaque_id
 
 
-def test_ids_change_with_the_plan_and_are_those_of_px4(free: FreeBench) -> None:
+def test_ids_change_with_the_plan_and_are_those_of_px4(free: MissionBench) -> None:
     free.upload(PLAN)
     identity = opaque_id(PLAN)
     assert free.plans.id_of(MISSION) == identity != 0
@@ -50,11 +50,11 @@ def test_ids_change_with_the_plan_and_are_those_of_px4(free: FreeBench) -> None:
     assert opaque_id([]) == 0 and opaque_id(PLAN[::-1]) != identity
 
 
-def currents(free: FreeBench) -> list[tuple[int, int, int, int]]:
+def currents(free: MissionBench) -> list[tuple[int, int, int, int]]:
     return [(c.seq, c.total, c.mission_state, c.mission_mode) for c in free.inbox[GROUND] if c.id == 42]
 
 
-def test_current_item_is_streamed_and_sent_on_change(free: FreeBench) -> None:
+def test_current_item_is_streamed_and_sent_on_change(free: MissionBench) -> None:
     free.collect()
     assert currents(free) == [(0, 0xFFFF, m.MISSION_STATE_NO_MISSION, 2)]
     free.wait(2.05)
@@ -73,7 +73,7 @@ def test_current_item_is_streamed_and_sent_on_change(free: FreeBench) -> None:
     assert currents(free)[-1] == (1, 5, m.MISSION_STATE_COMPLETE, 2)
 
 
-def test_ground_chooses_the_current_item(free: FreeBench) -> None:
+def test_ground_chooses_the_current_item(free: MissionBench) -> None:
     free.upload(PLAN)
     free.send(m.MAVLink_mission_set_current_message(1, 1, 3))
     free.collect()
@@ -95,7 +95,7 @@ def test_ground_chooses_the_current_item(free: FreeBench) -> None:
     ],
 )
 def test_current_item_is_chosen_by_command(
-    free: FreeBench, parameters: Any, result: int, current: int, missions: int
+    free: MissionBench, parameters: Any, result: int, current: int, missions: int
 ) -> None:
     free.upload(PLAN)
     free.flight.current_item = 2
@@ -104,7 +104,7 @@ def test_current_item_is_chosen_by_command(
     assert (free.plans.current, free.flight.taken) == (current, missions)  # anew: jumps are counted again
 
 
-def test_item_marked_as_current_is_flown_to_first(free: FreeBench) -> None:
+def test_item_marked_as_current_is_flown_to_first(free: MissionBench) -> None:
     free.answers(count(2))
     free.answers(item_message(0, waypoint(0)))
     free.answers(item_message(1, waypoint(1), current=1))
@@ -113,14 +113,14 @@ def test_item_marked_as_current_is_flown_to_first(free: FreeBench) -> None:
     assert free.plans.current == 0
 
 
-def test_same_plan_once_more_does_not_begin_the_mission_anew(free: FreeBench) -> None:
+def test_same_plan_once_more_does_not_begin_the_mission_anew(free: MissionBench) -> None:
     free.upload(PLAN)
     free.flight.current_item = 3
     assert free.upload(PLAN) == ACCEPTED
     assert (free.plans.current, free.flight.taken) == (3, 1)
 
 
-def test_reached_items_are_sent_at_once_and_repeated(free: FreeBench) -> None:
+def test_reached_items_are_sent_at_once_and_repeated(free: MissionBench) -> None:
     free.upload(PLAN)
     free.flight.on_reached(0)
     free.flight.on_reached(1)
@@ -131,7 +131,7 @@ def test_reached_items_are_sent_at_once_and_repeated(free: FreeBench) -> None:
     assert free.wait(5.0) == []
 
 
-def test_progress_is_sent_on_request(free: FreeBench) -> None:
+def test_progress_is_sent_on_request(free: MissionBench) -> None:
     free.upload(PLAN)
     before = len(currents(free))
     answers = free.answers(command(m.MAV_CMD_REQUEST_MESSAGE, m.MAVLINK_MSG_ID_MISSION_CURRENT))

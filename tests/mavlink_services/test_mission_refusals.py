@@ -16,7 +16,7 @@ from mission_ground import (
     MISSION,
     PLAN,
     RALLY,
-    FreeBench,
+    MissionBench,
     corners,
     count,
     item_message,
@@ -37,13 +37,13 @@ from gcs.mission.items import ItemError
 from gcs.mission.items import MissionItem as FileItem
 
 
-def test_items_beyond_the_announced_number_end_the_upload(free: FreeBench) -> None:
+def test_items_beyond_the_announced_number_end_the_upload(free: MissionBench) -> None:
     free.answers(count(2))
     assert results(free.answers(item_message(2, waypoint()))) == [m.MAV_MISSION_INVALID_SEQUENCE]
     assert free.wait(10.0) == [] and free.plans.items == ()
 
 
-def test_items_out_of_order_wait_for_the_next_request(free: FreeBench) -> None:
+def test_items_out_of_order_wait_for_the_next_request(free: MissionBench) -> None:
     free.answers(count(3))
     assert free.answers(item_message(1, waypoint(1))) == []
     assert [found.seq for found in free.wait(0.3)] == [0]
@@ -54,14 +54,14 @@ def test_items_out_of_order_wait_for_the_next_request(free: FreeBench) -> None:
     ("plan_type", "limit"),
     [(MISSION, LIMITS.mission_items_max), (FENCE, LIMITS.fence_items_max), (RALLY, LIMITS.rally_points_max)],
 )
-def test_more_items_than_there_is_space_for_are_refused(free: FreeBench, plan_type: PlanType, limit: int) -> None:
+def test_more_items_than_there_is_space_for_are_refused(free: MissionBench, plan_type: PlanType, limit: int) -> None:
     for number in (limit + 1, 65535):
         answers = free.answers(count(number, plan_type))
         assert results(answers) == [m.MAV_MISSION_NO_SPACE] and str(limit) in texts(answers)
     assert [found.get_type() for found in free.answers(count(limit, plan_type))] == ["MISSION_REQUEST_INT"]
 
 
-def test_unknown_plan_types_are_refused_at_once(free: FreeBench) -> None:
+def test_unknown_plan_types_are_refused_at_once(free: MissionBench) -> None:
     for message in (
         count(1, 7), count(0, 255), request_list(3), request_list(255), m.MAVLink_mission_clear_all_message(1, 1, 9),
         m.MAVLink_mission_request_int_message(1, 1, 0, 77), m.MAVLink_mission_write_partial_list_message(1, 1, 0, 0, 5),
@@ -70,7 +70,7 @@ def test_unknown_plan_types_are_refused_at_once(free: FreeBench) -> None:
 
 
 @pytest.mark.parametrize("target", [0, 2])
-def test_messages_to_all_or_to_others_are_not_heeded(free: FreeBench, target: int) -> None:
+def test_messages_to_all_or_to_others_are_not_heeded(free: MissionBench, target: int) -> None:
     free.upload(PLAN)
     for message in (
         count(1, MISSION, target), m.MAVLink_mission_clear_all_message(target, 1, 0),
@@ -115,7 +115,7 @@ REFUSED = [
 
 @pytest.mark.parametrize(("item", "result"), REFUSED)
 def test_item_that_cannot_be_flown_is_refused_with_its_field_and_the_old_plan_stays(
-    free: FreeBench, item: Any, result: int
+    free: MissionBench, item: Any, result: int
 ) -> None:
     free.upload(PLAN)
     free.answers(count(2))
@@ -167,7 +167,7 @@ TAKEN = [
 
 
 @pytest.mark.parametrize("item", TAKEN)
-def test_item_that_px4_takes_is_taken(free: FreeBench, item: Any) -> None:
+def test_item_that_px4_takes_is_taken(free: MissionBench, item: Any) -> None:
     assert free.upload([waypoint(3), item]) == ACCEPTED
     assert same(free.download(), [waypoint(3), item]) and free.plans.problem is None
 
@@ -185,13 +185,13 @@ def test_item_that_px4_takes_is_taken(free: FreeBench, item: Any) -> None:
         [placeless(m.MAV_CMD_DO_JUMP, 1 + (i + 1) % 1900, 1) for i in range(1900)],
     ],
 )
-def test_loop_without_a_waypoint_is_refused(free: FreeBench, jumps: Any) -> None:
+def test_loop_without_a_waypoint_is_refused(free: MissionBench, jumps: Any) -> None:
     assert free.upload([waypoint(), *jumps]) == PARAM + 1
     assert "never end" in texts(free.inbox[GROUND])
 
 
 @pytest.mark.parametrize("item", [placeless(m.MAV_CMD_DO_JUMP, 0, -1), placeless(m.MAV_CMD_DO_JUMP, 1, 0)])
-def test_loop_with_a_waypoint_and_a_jump_that_is_never_taken_are_accepted(free: FreeBench, item: Any) -> None:
+def test_loop_with_a_waypoint_and_a_jump_that_is_never_taken_are_accepted(free: MissionBench, item: Any) -> None:
     assert free.upload([waypoint(), item]) == ACCEPTED
 
 
@@ -207,19 +207,19 @@ def test_loop_with_a_waypoint_and_a_jump_that_is_never_taken_are_accepted(free: 
         ([waypoint(command=5003, param1=9.0, x=UNKNOWN, y=UNKNOWN)], PARAM + 5),
     ],
 )
-def test_fence_that_encloses_nothing_is_refused(free: FreeBench, items: Any, result: int) -> None:
+def test_fence_that_encloses_nothing_is_refused(free: MissionBench, items: Any, result: int) -> None:
     free.upload(corners(5002), FENCE)
     assert free.upload(items, FENCE) == result
     assert same(free.plans.fence, corners(5002))
 
 
-def test_rally_points_are_nothing_else(free: FreeBench) -> None:
+def test_rally_points_are_nothing_else(free: MissionBench) -> None:
     assert free.upload([waypoint()], RALLY) == m.MAV_MISSION_UNSUPPORTED
     assert free.upload([rally_point()._replace(z=math.nan)], RALLY) == PARAM + 7
     assert free.upload([rally_point()], RALLY) == ACCEPTED
 
 
-def test_mission_far_from_home_is_taken_and_cannot_be_started(free: FreeBench) -> None:
+def test_mission_far_from_home_is_taken_and_cannot_be_started(free: MissionBench) -> None:
     assert free.upload([waypoint(x=-353632620, y=1491652370)]) == ACCEPTED
     assert free.plans.problem is not None and "km from home" in free.plans.problem
     assert "cannot be started" in texts(free.inbox[GROUND])

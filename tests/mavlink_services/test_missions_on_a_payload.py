@@ -6,7 +6,7 @@ from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as m
 import pytest
-from mission_ground import FreeBench, item_message, waypoint
+from mission_ground import MissionBench, item_message, waypoint
 from vehicle_bench import ARM, GROUND, OFFBOARD, STRANGER, Bench, attitude_target, command
 
 from gcs.mavlink import px4
@@ -79,7 +79,7 @@ def test_store_refuses_whatever_the_server_hands_to_it() -> None:
 
 
 def test_capabilities_say_that_missions_fences_and_rally_points_may_be_requested(coupled: Bench) -> None:
-    for bench in (coupled, FreeBench()):
+    for bench in (coupled, MissionBench()):
         found = answers(bench, command(m.MAV_CMD_REQUEST_MESSAGE, m.MAVLINK_MSG_ID_AUTOPILOT_VERSION))
         [version] = [message for message in found if message.get_type() == "AUTOPILOT_VERSION"]
         for name in ("MISSION_INT", "MISSION_FENCE", "MISSION_RALLY", "COMMAND_INT"):
@@ -88,7 +88,7 @@ def test_capabilities_say_that_missions_fences_and_rally_points_may_be_requested
 
 def test_only_the_ground_in_control_changes_plans() -> None:
     """A ground that flies a free vehicle in OFFBOARD keeps others from its plans; they may read them."""
-    bench = Bench(plans=FreeBench().plans)
+    bench = Bench(plans=MissionBench().plans)
     bench.streaming[GROUND, 255] = attitude_target()
     bench.run(0.2)
     assert bench.result(OFFBOARD) == bench.result(ARM) == m.MAV_RESULT_ACCEPTED

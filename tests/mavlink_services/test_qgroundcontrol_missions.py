@@ -11,7 +11,7 @@ from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as m
 import pytest
-from mission_ground import ACCEPTED, FreeBench, Uploader, corners, placeless, rally_point, same, waypoint
+from mission_ground import ACCEPTED, MissionBench, Uploader, corners, placeless, rally_point, same, waypoint
 from vehicle_bench import Bench, command
 
 from gcs.mavlink.services.mission_item import PlanType
@@ -80,7 +80,7 @@ def test_connect_states_end_on_a_coupled_vehicle_with_empty_plans(bench: Bench) 
 
 
 def test_connect_states_read_the_plans_of_a_free_vehicle() -> None:
-    bench = FreeBench()
+    bench = MissionBench()
     for plan_type, items in PLANS.items():
         assert bench.plans.accept(plan_type, tuple(items), 0).is_accepted
     read = QGroundControl(bench).connect()
@@ -95,7 +95,7 @@ def test_connect_states_read_the_plans_of_a_free_vehicle() -> None:
 @pytest.mark.parametrize("lost", ["count", "request"])
 def test_operator_uploads_all_plans_one_after_the_other(lost: str) -> None:
     """The three managers write in turn; a lost message of either side costs one repetition."""
-    bench = FreeBench()
+    bench = MissionBench()
     QGroundControl(bench).connect()
     for plan_type, items in PLANS.items():
         ground = Uploader(items, plan_type)

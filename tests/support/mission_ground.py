@@ -185,7 +185,7 @@ class Flight:
         return ACCEPTED_COMMAND
 
 
-class FreeBench(Bench):
+class MissionBench(Bench):
     """A vehicle with plans of its own, at rest."""
 
     def __init__(self) -> None:

@@ -122,7 +122,8 @@ def test_version_tells_capabilities_and_the_vehicle(still: Bench) -> None:
     assert capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
     assert capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE
     assert capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
-    assert not capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_INT
+    assert capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_INT
+    assert not capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_FLOAT
     assert (version.pop("flight_sw_version"), version.pop("uid")) == (0x00010000, 1)
     assert version == {}
 
