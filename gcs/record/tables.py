@@ -65,11 +65,11 @@ ALARM_COLUMNS = ("time_s", "source", "code", "severity", "text")
 PHASE_COLUMNS = ("time_s", "phase")
 
 
-def truth_columns(number_of_uavs: int) -> tuple[str, ...]:
-    """Return the columns of ``truth.csv``."""
+def truth_columns(number_of_uavs: int, payload: bool = True) -> tuple[str, ...]:
+    """Return the columns of ``truth.csv``; a swarm without a ``payload`` has none of it."""
     parts = ("x_m", "y_m", "z_m", "qw", "qx", "qy", "qz", "thrust_n")
     uavs = tuple(f"uav{i}_{part}" for i in range(1, number_of_uavs + 1) for part in parts)
-    return ("time_s", *PAYLOAD_COLUMNS, *uavs, "contacts")
+    return ("time_s", *(PAYLOAD_COLUMNS if payload else ()), *uavs, "contacts")
 
 
 def force_columns(number_of_uavs: int) -> tuple[str, ...]:

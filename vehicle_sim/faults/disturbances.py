@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from functools import reduce
 from typing import TYPE_CHECKING, TypeVar
 
+from vehicle_sim.world.free_world import FreeWorld
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
 from vehicle_sim.world.world import World
@@ -41,7 +42,7 @@ class Disturbances:
         for fault in self.faults:
             fault.schedule.take_off = time
 
-    def disturb(self, world: World, now: float) -> Forces | None:
+    def disturb(self, world: World | FreeWorld, now: float) -> Forces | None:
         """Set the load, and return the forces of the wind on payload and UAVs; None: no force."""
         return None if self.of_world is None else self.of_world.act(world, now)
 

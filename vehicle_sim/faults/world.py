@@ -13,10 +13,12 @@ from gcs.config.tables import AirSettings
 from gcs.faults import world as kinds
 from idc_controller.rotations_float import Vector, into_body
 from vehicle_sim.faults.active import WORLD, ActiveFault
+from vehicle_sim.world.free_world import FreeWorld
 from vehicle_sim.world.world import World
+from vehicle_sim.world.world_state import WorldState
 
-Forces = tuple[Vector, Sequence[Vector]]
-"""Forces on the payload and on each UAV, at the centres of mass, north-east-down (N)."""
+Forces = tuple[Vector | None, Sequence[Vector]]
+"""Forces on the payload, if there is one, and on each UAV, at the centres of mass, north-east-down (N)."""
 
 
 class Wind:
@@ -61,9 +63,9 @@ class WorldFaults:
         self._loads = [fault for fault in faults if isinstance(fault.settings, kinds.PayloadMass)]
         self._change = 0.0
 
-    def act(self, world: World, now: float) -> Forces | None:
+    def act(self, world: World | FreeWorld, now: float) -> Forces | None:
         """Set the load, and return the drag on payload and UAVs (N); None: no air moves."""
-        if self._loads:
+        if self._loads and isinstance(world, World):
             self._set_load(world, now)
         air = None
         for wind in self._winds:
@@ -86,15 +88,16 @@ class WorldFaults:
             world.set_payload_mass(max(world.parameters.m_0 + total, kinds.LEAST_MASS))
 
 
-def _drag(world: World, settings: AirSettings, air: Vector) -> Forces:
+def _drag(world: World | FreeWorld, settings: AirSettings, air: Vector) -> Forces:
     state = world.state()
-    relative = _minus(air, state.payload_velocity_in_world)
-    area_x, area_y, area_z = world.parameters.payload.areas.tolist()
-    # |u| times the area across u: of a box, the sum over its faces of their share in u.
-    x, y, z = into_body(state.payload_quaternion, relative)
-    area_times_speed = abs(x) * area_x + abs(y) * area_y + abs(z) * area_z
-    factor = 0.5 * settings.density * settings.payload_drag * area_times_speed
-    payload = _times(factor, relative)
+    payload = None
+    if isinstance(world, World) and isinstance(state, WorldState):
+        relative = _minus(air, state.payload_velocity_in_world)
+        area_x, area_y, area_z = world.parameters.payload.areas.tolist()
+        # |u| times the area across u: of a box, the sum over its faces of their share in u.
+        x, y, z = into_body(state.payload_quaternion, relative)
+        area_times_speed = abs(x) * area_x + abs(y) * area_y + abs(z) * area_z
+        payload = _times(0.5 * settings.density * settings.payload_drag * area_times_speed, relative)
     uavs = []
     for uav in state.uavs:
         relative = _minus(air, uav.velocity_in_world)

@@ -27,13 +27,15 @@ class TruthLog:
     world: see ``incomplete``.
     """
 
-    def __init__(self, run_dir: Path | str, number_of_uavs: int) -> None:
+    def __init__(self, run_dir: Path | str, number_of_uavs: int, payload: bool = True) -> None:
+        """``payload``: False for vehicles without one, whose truth has no columns of it."""
         self._run_dir = folder = make_folder(run_dir)
         self.incomplete = incomplete = IncompleteRecords()
-        self._truth = TableWriter(folder / "truth.csv", truth_columns(number_of_uavs), incomplete)
+        self._truth = TableWriter(folder / "truth.csv", truth_columns(number_of_uavs, payload), incomplete)
         self._forces = TableWriter(folder / FORCES, force_columns(number_of_uavs), incomplete, when_needed=True)
         self._obstacles = TableWriter(folder / "obstacles.csv", OBSTACLE_COLUMNS, incomplete, when_needed=True)
         self._modes = TableWriter(folder / "modes.csv", MODE_COLUMNS, incomplete, when_needed=True)
+        self._has_payload = payload
         self._shapes_written = False
         self._flown: dict[int, tuple[str, bool, bool]] = {}
 
@@ -42,12 +44,15 @@ class TruthLog:
     ) -> None:
         """Append the state at a ``time`` (s), and ``obstacles``: at first all, then those that move.
 
-        ``states`` (N + 1, 13) as in :mod:`.state_kernels`, ``thrusts`` (N) of the UAVs; ``contacts`` is the number of
-        touching pairs, pad and cradles excluded. Raises ``ValueError`` for another number of UAVs.
+        ``states`` (N + 1, 13) as in :mod:`.state_kernels`, without a payload (N, 13); ``thrusts`` (N) of the UAVs;
+        ``contacts`` is the number of touching pairs, pad and cradles excluded. Raises ``ValueError`` for another number
+        of UAVs.
         """
         self.incomplete.time = time
-        payload, *uavs = states.tolist()
-        row = [time, *payload]
+        uavs = states.tolist()
+        row = [time]
+        if self._has_payload:
+            row += uavs.pop(0)
         for uav, thrust in zip(uavs, thrusts, strict=True):
             row += uav[:_POSE_COLUMNS]
             row.append(thrust)

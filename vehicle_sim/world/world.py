@@ -193,6 +193,11 @@ class World:
         """Return True if every UAV is held by its cradle."""
         return self._cradles.number_held == len(self._system.uavs)
 
+    @property
+    def any_lifted(self) -> bool:
+        """Return True if a UAV has left its cradle."""
+        return not self.all_cradled
+
     def contacts(self) -> Contacts:
         """Return what touches after the last step, computed once a step."""
         return self._contacts.after(self.steps, self.physics_hz)

@@ -43,6 +43,13 @@ class WorldState(NamedTuple):
     uavs: tuple[UavState, ...]
 
 
+class FreeState(NamedTuple):
+    """The true state of UAVs without a payload at ``time`` (s) since the world was made, in the order of their ids."""
+
+    time: float
+    uavs: tuple[UavState, ...]
+
+
 def flipped(v: Sequence[float]) -> Vector:
     """A vector between the engine's frames and the project's, in either direction."""
     return v[0], -v[1], -v[2]
