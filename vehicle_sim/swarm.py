@@ -10,10 +10,12 @@ from gcs.mavlink.address import Address
 from gcs.mission.model import DEFAULT_HOME, Home, Obstacle
 from idc_controller.arrays import Array
 from vehicle_sim.autopilot.airframe import Airframe
+from vehicle_sim.autopilot.free.settings import free_settings
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.faults.disturbances import Disturbances
 from vehicle_sim.mavlink.vehicle import Vehicle
 from vehicle_sim.team import Team
+from vehicle_sim.world.free_world import FreeWorld
 from vehicle_sim.world.obstacle_bodies import MovingObstacles
 from vehicle_sim.world.rotors import Rotors, Wrenches
 from vehicle_sim.world.truth_log import TruthLog
@@ -44,14 +46,24 @@ class Swarm:
         sdk_address: Address | None = None,
         faults: Disturbances | None = None,
         gui: bool = False,
+        free: bool = False,
     ) -> None:
         """Open the world, or raise :class:`SimulationError`.
 
         ``ground_address``: the port of ground stations, to which all vehicles send their streams; ``sdk_address``: the
-        port of an SDK, to which vehicle 1 sends them, the others to those that follow.
+        port of an SDK, to which vehicle 1 sends them, the others to those that follow. ``free``: the vehicles of the
+        team have no payload, and fly each by itself.
         """
-        system, rates = config.true_parameters(), config.rates
-        self.world = World(system, rates.physics, gui, config.world)
+        rates, onboard = config.rates, config.onboard()
+        self.world: World | FreeWorld
+        if free:
+            self.world = FreeWorld(config.uav, config.team.vehicles, rates.physics, gui, config.world)
+            airframes = [Airframe.of_config(config.uav)] * config.team.vehicles
+            onboard = free_settings(onboard)
+        else:
+            system = config.true_parameters()
+            self.world = World(system, rates.physics, gui, config.world)
+            airframes = [Airframe.of_system(system, i, config.uav) for i in range(system.number_of_uavs)]
         try:
             self._obstacles = MovingObstacles(self.world.obstacles, obstacles)
         except BaseException:
@@ -64,14 +76,12 @@ class Swarm:
         self._periods = [rates.physics // rate for rate in (rates.onboard, rates.truth, config.range_sensor.rate)]
         """Physics steps between onboard steps, rows of the truth, and scans of the range sensors."""
         self._contacts = 0
-        airframes = [Airframe.of_system(system, i, config.uav) for i in range(system.number_of_uavs)]
-        onboard = config.onboard()
         arrays = OnboardArrays.of(airframes, onboard.land_detector)
         self.vehicles = tuple(
             Vehicle(
                 i, airframe, onboard_rate=rates.onboard, telemetry_rate=rates.telemetry, home=home or DEFAULT_HOME,
                 clients=_clients(i, ground_address, sdk_address), clock=self._faults.clock_of(i), autopilot=onboard,
-                link=config.vehicle_link, arrays=arrays.of_vehicle(i - 1),
+                link=config.vehicle_link, arrays=arrays.of_vehicle(i - 1), free=free,
             )
             for i, airframe in enumerate(airframes, start=1)
         )  # fmt: skip
@@ -79,7 +89,7 @@ class Swarm:
             [airframe.rotors for airframe in airframes], [airframe.motor_time_constant for airframe in airframes],
             1.0 / rates.physics, self._periods[0],
         )  # fmt: skip
-        self._team = Team(self.vehicles, arrays, rotors, config, seed, self._faults)
+        self._team = Team(self.vehicles, arrays, rotors, config, seed, self._faults, free=free)
         self._modes_recorded = False
         self._wrenches: Wrenches = [], []
         """Of the physics steps between the last and the next onboard step."""
@@ -169,7 +179,7 @@ class Swarm:
         self._contacts = max(self._contacts, world.contacts().pairs)
         if exceeded := world.clipped():
             self._team.clipped(exceeded)
-        if self.take_off_time is None and not world.all_cradled:
+        if self.take_off_time is None and world.any_lifted:
             self.take_off_time = world.time
             self._faults.took_off(world.time)
         steps = world.steps
@@ -190,7 +200,7 @@ class Swarm:
         """Record the true ``states`` with the most contacts at a time since the last row; standing obstacles once."""
         obstacles = self.world.obstacles.all() if begins else self._obstacles.moving()
         truth.write(self.world.time, states, self.world.thrusts, self._contacts, obstacles)
-        if not self.world.all_cradled:  # cradles bear what is not known
+        if isinstance(self.world, World) and self.world.any_lifted:  # cradles bear what is not known
             truth.write_tensions(self.world.time, self.world.link_tensions())
         self._contacts = 0
 

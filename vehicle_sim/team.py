@@ -16,11 +16,14 @@ from vehicle_sim.world.obstacle_bodies import ObstacleBodies
 from vehicle_sim.world.range_sensor import RangeSensor
 from vehicle_sim.world.rotors import Rotors, Wrenches
 from vehicle_sim.world.sensors import PAYLOAD_UNIT, Measurement, NavigationSensors, SensorNoise, vehicle_noise
-from vehicle_sim.world.world_state import WorldState
+from vehicle_sim.world.world_state import FreeState, WorldState
 
 
 class Team:
-    """N vehicles (``vehicles``, of the system ids 1 .. N, in this order) and the payload's unit, which they relay."""
+    """N vehicles (``vehicles``, of the system ids 1 .. N, in this order) and the payload's unit, which they relay.
+
+    Free vehicles have none; the states of all are then those of the vehicles alone.
+    """
 
     def __init__(
         self,
@@ -30,19 +33,22 @@ class Team:
         config: SystemConfig,
         seed: int,
         faults: Disturbances,
+        *,
+        free: bool = False,
     ) -> None:
-        """``arrays`` of these vehicles, each of which has its row."""
+        """``arrays`` of these vehicles, each of which has its row; ``free``: they have no payload."""
         self.vehicles = tuple(vehicles)
         self._autopilots = [vehicle.autopilot for vehicle in vehicles]
         self._arrays = arrays
         self._rotors = rotors
         ids = [vehicle.system_id for vehicle in vehicles]
-        self._sensors = _navigation_sensors(config.sensors, seed, ids)
+        self._has_payload = not free
+        self._sensors = _navigation_sensors(config.sensors, seed, ids, payload=not free)
         self._range_sensors = [RangeSensor(config.range_sensor, seed, i) for i in ids]
         self._faults = faults
         self._disturbed = [vehicle for vehicle in vehicles if faults.disturbs_samples(vehicle.system_id)]
         self._undisturbed = [vehicle for vehicle in vehicles if vehicle not in self._disturbed]
-        self._samples = self._sensors.samples[1:]
+        self._samples = self._sensors.samples[-len(ids) :]
         self._times = np.empty(len(ids))
         self._measured_at = math.nan
 
@@ -71,6 +77,8 @@ class Team:
 
     def relay(self) -> None:
         """Let the vehicles relay the payload's newest sample; those that a fault disturbs get every one at once."""
+        if not self._has_payload:
+            return
         sample = self._payload_sample()
         for vehicle in self._undisturbed:
             vehicle.relay(sample)
@@ -86,10 +94,11 @@ class Team:
         """
         missing = []
         samples, times, time = self._samples, self._times, self._measured_at
-        payload_sample = self._payload_sample()
+        payload_sample = self._payload_sample() if self._has_payload else None
         for vehicle in self._disturbed:
             number = vehicle.system_id
-            vehicle.relay(self._faults.payload_sample(number, payload_sample))
+            if payload_sample is not None:
+                vehicle.relay(self._faults.payload_sample(number, payload_sample))
             before = Measurement.of_row(time, samples[number - 1].tolist())
             sample = self._faults.own_sample(number, before)
             if sample is None:
@@ -98,7 +107,7 @@ class Team:
                 samples[number - 1], times[number - 1] = sample.as_row(), sample.time
         return missing
 
-    def scan(self, state: WorldState, obstacles: ObstacleBodies) -> None:
+    def scan(self, state: WorldState | FreeState, obstacles: ObstacleBodies) -> None:
         """Let every vehicle scan for the obstacles."""
         bodies = obstacles.ray_bodies
         for vehicle, sensor, uav in zip(self.vehicles, self._range_sensors, state.uavs, strict=True):
@@ -108,8 +117,10 @@ class Team:
             vehicle.take_scan(self._faults.range_sample(vehicle.system_id, scan))
 
 
-def _navigation_sensors(noise: SensorsConfig, seed: int, vehicles: Sequence[int]) -> NavigationSensors:
-    """Return the sensors of the payload's unit and of the ``vehicles`` (system ids)."""
+def _navigation_sensors(noise: SensorsConfig, seed: int, vehicles: Sequence[int], payload: bool) -> NavigationSensors:
+    """Return the sensors of the ``vehicles`` (system ids), and before them of the payload's unit, if there is one."""
+    if not payload:
+        return NavigationSensors([vehicle_noise(noise)] * len(vehicles), seed, vehicles)
     attitude = math.radians(noise.attitude_deg)
     payload_noise = SensorNoise(noise.position, attitude, noise.payload_velocity, noise.payload_rates)
     noises = [payload_noise, *[vehicle_noise(noise)] * len(vehicles)]

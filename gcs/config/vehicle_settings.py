@@ -99,6 +99,39 @@ class LandDetectorSettings(SettingsTable):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class FreeFlightSettings(SettingsTable):
+    """Flight of a vehicle without a payload; speeds and heights are its parameters."""
+
+    control_interval: float = 0.02  # s; between steps of the position control
+    step_max: float = 0.1  # s; longest time between steps that is counted
+    position_kp: float = 1.0  # 1/s; horizontal position gain
+    vertical_position_kp: float = 1.5  # 1/s; altitude gain
+    velocity_kp: float = 2.5  # 1/s; horizontal velocity gain
+    velocity_ki: float = 0.5  # 1/s2; its integral
+    vertical_velocity_kp: float = 4.0  # 1/s; vertical velocity gain
+    vertical_velocity_ki: float = 1.0  # 1/s2; its integral
+    integral_max: float = 4.0  # m/s2; largest integral part
+    tilt_max_deg: float = 45.0  # deg; largest tilt, PX4's MPC_TILTMAX_AIR
+    thrust_min: float = 0.2  # of the weight; least thrust in the air
+    thrust_share_max: float = 0.9  # of the largest thrust; the rest is for the attitude
+    acceleration: float = 3.0  # m/s2; horizontal, of moving set-points, PX4's MPC_ACC_HOR
+    vertical_acceleration: float = 3.0  # m/s2; vertical
+    jerk: float = 8.0  # m/s3; of moving set-points
+    velocity_rate: float = 4.0  # 1/s; with which their velocity follows
+    approach_rate: float = 1.0  # 1/s; speed over distance near the goal
+    straight_from: float = 0.5  # m; distance above which the path to a goal is kept straight
+    yaw_rate: float = 0.8  # rad/s; of moving set-points, PX4's MPC_YAWRAUTO_MAX
+    rest_speed: float = 0.1  # m/s; below which a braking set-point has come to rest
+    altitude_radius: float = 0.3  # m; vertical distance within which a goal counts as reached
+    heading_from: float = 1.0  # m; horizontal distance from which a vehicle looks ahead to its goal
+    landing_slow_below: float = 5.0  # m above home; below which it lands with MPC_LAND_SPEED, PX4's MPC_LAND_ALT2
+    landing_slow_from: float = 10.0  # m above home; from which it slows down to that, PX4's MPC_LAND_ALT1
+    touchdown_speed: float = 0.15  # m/s; vertical speed of a vehicle that the ground holds
+    touchdown_thrust: Share = 0.85  # of the weight; thrust below which the ground carries the rest
+    touchdown_time: float = 0.5  # s; for which both must last
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class AutopilotSettings(SettingsTable):
     """All settings of one autopilot."""
 
@@ -108,6 +141,7 @@ class AutopilotSettings(SettingsTable):
     setpoints: SetpointSettings = field(default_factory=SetpointSettings)
     hold: HoldSettings = field(default_factory=HoldSettings)
     land_detector: LandDetectorSettings = field(default_factory=LandDetectorSettings)
+    free: FreeFlightSettings = field(default_factory=FreeFlightSettings)
     takeoff_altitude: float = setting(
         2.5, "m", "MIS_TAKEOFF_ALT, reported to the ground; AUTO.TAKEOFF is denied", ge=0.0, le=80.0
     )

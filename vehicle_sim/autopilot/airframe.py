@@ -31,6 +31,20 @@ class Airframe:
             raise SimulationError(f"attitude gains must be positive, got {self.attitude_kp} and {self.attitude_kd}")
 
     @classmethod
+    def of_config(cls, uav: UavConfig, g: float = 9.81) -> Self:
+        """Return a UAV of a system file that flies alone."""
+        x, y, z = uav.inertia
+        return cls(
+            mass=uav.mass,
+            inertia=((x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z)),
+            rotors=RotorGeometry(uav.thrust_max, uav.rotor_speed_max, uav.arm_length, uav.torque_to_thrust),
+            motor_time_constant=uav.motor_time_constant,
+            attitude_kp=uav.attitude_kp,
+            attitude_kd=uav.attitude_kd,
+            g=g,
+        )
+
+    @classmethod
     def of_system(cls, system: SystemParameters, index: int, uav: UavConfig) -> Self:
         """Return UAV ``index`` (from 0) of a system; ``uav`` adds what the controller does not model."""
         a, b, c = ((float(x), float(y), float(z)) for x, y, z in system.J[index])

@@ -5,6 +5,7 @@ failsafes in :mod:`.failsafe`, prearm checks in :mod:`.arming`, what they share 
 """
 
 import math
+from typing import ClassVar
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -12,19 +13,21 @@ from gcs.config.vehicle_settings import AutopilotSettings
 from gcs.mavlink import px4
 from gcs.mavlink.services.answer import ACCEPTED, Answer, denied, rejected_for_now
 from gcs.mavlink.services.parameters import ParameterTable
-from idc_controller.rotations_float import attitude_of_force, euler_of
+from idc_controller.rotations_float import Vector, attitude_of_force, euler_of
 from vehicle_sim.autopilot import modes
 from vehicle_sim.autopilot.actuation import NO_RATES, Actuation
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.arming import arming_problem
-from vehicle_sim.autopilot.failsafe import check_failsafes
+from vehicle_sim.autopilot.failsafe import COUPLED, check_failsafes
 from vehicle_sim.autopilot.flight_state import TIME_TOLERANCE, FlightState
 from vehicle_sim.autopilot.land_detector import LandDetector
 from vehicle_sim.autopilot.navigation import Navigation
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
-from vehicle_sim.autopilot.setpoint_stream import SetpointStream
+from vehicle_sim.autopilot.setpoint_stream import Setpoint, SetpointStream
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint, StopPlan
 from vehicle_sim.world.sensors import Measurement
+
+_ORIGIN: Vector = (0.0, 0.0, 0.0)
 
 
 class Autopilot:
@@ -32,6 +35,8 @@ class Autopilot:
 
     ``arrays``: its row of the team's. ``changes`` rises with every change of a HEARTBEAT; ``state`` is to be read only.
     """
+
+    state_class: ClassVar[type[FlightState]] = FlightState
 
     def __init__(
         self,
@@ -42,7 +47,7 @@ class Autopilot:
     ) -> None:
         """``arrays`` of this vehicle in its team; None: it is a team of its own."""
         self.arrays = arrays or OnboardArrays.of([airframe], settings.land_detector)
-        self.state = FlightState(
+        self.state = self.state_class(
             airframe,
             parameters,
             settings,
@@ -65,6 +70,11 @@ class Autopilot:
     def failsafe(self) -> bool:
         """Return True if the vehicle flies otherwise than it was commanded."""
         return self.state.failsafe
+
+    @property
+    def home(self) -> Vector:
+        """Where it returns to (NED, m): the origin."""
+        return _ORIGIN
 
     @property
     def mode(self) -> int:
@@ -123,7 +133,7 @@ class Autopilot:
         self._decide_anew()
         return ACCEPTED
 
-    def follow(self, setpoint: AttitudeSetpoint, now: float) -> None:
+    def follow(self, setpoint: Setpoint, now: float) -> None:
         """A set-point of the ground that is in control. Two in time end the failsafe that their loss caused."""
         state = self.state
         if state.failsafe and self.wants_setpoints and state.has_fresh_setpoints(now):
@@ -137,7 +147,7 @@ class Autopilot:
         """A stop plan of the ground in control, in place of the last one."""
         self.state.stop_plan = plan
 
-    def enter_offboard(self, setpoint: AttitudeSetpoint, received: float, now: float) -> Answer:
+    def enter_offboard(self, setpoint: Setpoint, received: float, now: float) -> Answer:
         """Fly the set-points of a ground, the last of which was ``received`` (s) a moment ago."""
         answer = modes.enter_offboard(self.state, setpoint, received, now)
         self._decide_anew()
@@ -161,9 +171,7 @@ class Autopilot:
         state = self.state
         if not state.navigation.has_estimate:
             return False
-        check_failsafes(state, now)
-        if state.hold is not None:
-            self._check_touchdown(now)
+        self._supervise(now)
         if state.armed:
             self._fly(now)
         shown = (state.flown_mode, state.armed, state.failsafe, self.landed_state)
@@ -174,6 +182,12 @@ class Autopilot:
         self._shown = shown
         self.changes += 1
         return True
+
+    def _supervise(self, now: float) -> None:
+        """Take the actions of failsafes and of a touch-down."""
+        check_failsafes(COUPLED, self.state, now)
+        if self.state.hold is not None:
+            self._check_touchdown(now)
 
     def _decide_anew(self) -> None:
         """Decide with the next step, too: a message of a ground, or the last decision, may have changed anything."""
@@ -194,9 +208,11 @@ class Autopilot:
     def _fly(self, now: float) -> None:
         """The control law of what is flown: hold and descent, the set-points of OFFBOARD, or waiting armed."""
         state = self.state
-        if state.hold is None and state.mode == px4.MODE_OFFBOARD and (setpoint := state.setpoints.at(now)) is not None:
-            state.actuation.follow(setpoint, now)
-            return
+        if state.hold is None and state.mode == px4.MODE_OFFBOARD:
+            setpoint = state.setpoints.at(now)
+            if isinstance(setpoint, AttitudeSetpoint):
+                state.actuation.follow(setpoint, now)
+                return
         measured = state.navigation.estimate
         assert measured is not None
         if state.hold is not None:

@@ -1,32 +1,44 @@
 """A vehicle's failsafes: condition, parameter, action, as one table; ``docs/architecture.md`` mirrors it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
+from typing import Generic, TypeVar
 
 from gcs.mavlink import px4
 from vehicle_sim.autopilot.flight_state import FlightState
 
+S = TypeVar("S", bound=FlightState)
+
 
 @dataclass(frozen=True)
-class Failsafe:
+class Failsafe(Generic[S]):
     """Cause, condition and action; in flight the vehicle is then in failsafe, until a ground commands it."""
 
     name: str
     parameter: str
     """The PX4 parameter that decides when."""
-    cause: Callable[[FlightState, float], bool]
+    cause: Callable[[S, float], bool]
     """What must have happened."""
-    condition: Callable[[FlightState], bool]
+    condition: Callable[[S], bool]
     """And in which state of the vehicle."""
-    action: Callable[[FlightState, float], None]
+    action: Callable[[S, float], None]
     notice: str
     """STATUSTEXT to the operator; empty: none."""
 
 
-def check_failsafes(state: FlightState, now: float) -> None:
+Table = Sequence[tuple[Callable[[S, float], bool], Sequence[Failsafe[S]]]]
+"""Failsafes by their cause: one that several share is looked at once."""
+
+
+def by_cause(failsafes: Sequence[Failsafe[S]]) -> Table[S]:
+    """Return a table of failsafes in the order in which they count, those of one cause side by side."""
+    return [(cause, [*rows]) for cause, rows in groupby(failsafes, key=lambda failsafe: failsafe.cause)]
+
+
+def check_failsafes(table: Table[S], state: S, now: float) -> None:
     """Take the action of the first failsafe whose condition holds."""
-    for cause, failsafes in _BY_CAUSE:
+    for cause, failsafes in table:
         if not cause(state, now):
             continue
         for failsafe in failsafes:
@@ -37,7 +49,8 @@ def check_failsafes(state: FlightState, now: float) -> None:
                 return
 
 
-def _setpoints_lost(state: FlightState, now: float) -> bool:
+def setpoints_lost(state: FlightState, now: float) -> bool:
+    """Return True if OFFBOARD is flown and its set-points have stopped."""
     return state.mode == px4.MODE_OFFBOARD and not state.failsafe and not state.has_fresh_setpoints(now)
 
 
@@ -45,11 +58,13 @@ def _in_flight(state: FlightState) -> bool:
     return state.armed and state.is_up
 
 
-def _armed(state: FlightState) -> bool:
+def armed(state: FlightState) -> bool:
+    """Return True if the rotors may turn."""
     return state.armed
 
 
-def _always(state: FlightState) -> bool:
+def always(state: FlightState) -> bool:
+    """Return True."""
     return True
 
 
@@ -67,7 +82,8 @@ def _hold_then_land(state: FlightState, now: float) -> None:
     state.begin_hold(now, descent_start=now + state.parameters[px4.PARAM_LAND_DELAY])
 
 
-def _disarm(state: FlightState, now: float) -> None:
+def disarm(state: FlightState, now: float) -> None:
+    """Stop the rotors."""
     state.stop()
 
 
@@ -79,11 +95,11 @@ def _land(state: FlightState, now: float) -> None:
     state.failsafe = True
 
 
-FAILSAFES = (
+FAILSAFES: tuple[Failsafe[FlightState], ...] = (
     Failsafe(
         "offboard_loss",
         px4.PARAM_SETPOINT_LOSS,
-        _setpoints_lost,
+        setpoints_lost,
         _in_flight,
         _hold_then_land,
         "Set-points lost: braking and holding",
@@ -91,21 +107,21 @@ FAILSAFES = (
     Failsafe(
         "offboard_loss_on_ground",
         px4.PARAM_SETPOINT_LOSS,
-        _setpoints_lost,
-        _armed,
-        _disarm,
+        setpoints_lost,
+        armed,
+        disarm,
         "Set-points lost on the ground: disarmed",
     ),
-    Failsafe("offboard_loss_disarmed", px4.PARAM_SETPOINT_LOSS, _setpoints_lost, _always, _disarm, ""),
+    Failsafe("offboard_loss_disarmed", px4.PARAM_SETPOINT_LOSS, setpoints_lost, always, disarm, ""),
     Failsafe(
         "data_link_loss",
         px4.PARAM_LINK_LOSS,
         _data_link_lost,
-        _always,
+        always,
         _land,
         "No ground station: descending",
     ),
 )
 
-# A cause that several share is looked at once.
-_BY_CAUSE = [(cause, [*rows]) for cause, rows in groupby(FAILSAFES, key=lambda failsafe: failsafe.cause)]
+COUPLED = by_cause(FAILSAFES)
+"""Of a vehicle on a payload."""

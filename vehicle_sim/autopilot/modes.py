@@ -9,7 +9,7 @@ from dataclasses import replace
 from gcs.mavlink import px4
 from gcs.mavlink.services.answer import ACCEPTED, Answer, denied, rejected_for_now
 from vehicle_sim.autopilot.flight_state import FlightState
-from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
+from vehicle_sim.autopilot.setpoint_stream import Setpoint
 
 
 def enter_mode(state: FlightState, custom_mode: int, now: float) -> Answer:
@@ -20,7 +20,7 @@ def enter_mode(state: FlightState, custom_mode: int, now: float) -> Answer:
     return enter(state, custom_mode, now)
 
 
-def enter_offboard(state: FlightState, setpoint: AttitudeSetpoint, received: float, now: float) -> Answer:
+def enter_offboard(state: FlightState, setpoint: Setpoint, received: float, now: float) -> Answer:
     """Fly the set-points of a ground, the last of which was ``received`` (s) a moment ago."""
     if state.land.in_air and not state.navigation.is_valid(now):
         return rejected_for_now("OFFBOARD denied: no navigation data")

@@ -5,7 +5,10 @@ from collections import deque
 
 from gcs.config.vehicle_settings import SetpointSettings
 from idc_controller.rotations_float import mean_attitude
+from vehicle_sim.autopilot.position_setpoints import PositionSetpoint
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
+
+Setpoint = AttitudeSetpoint | PositionSetpoint
 
 
 class SetpointStream:
@@ -19,11 +22,11 @@ class SetpointStream:
 
     def __init__(self, settings: SetpointSettings) -> None:
         self._settings = settings
-        self._recent: deque[tuple[float, AttitudeSetpoint]] = deque()
-        self._mean: AttitudeSetpoint | None = None
+        self._recent: deque[tuple[float, Setpoint]] = deque()
+        self._mean: Setpoint | None = None
         self.last_time = -math.inf
 
-    def add(self, setpoint: AttitudeSetpoint, now: float) -> None:
+    def add(self, setpoint: Setpoint, now: float) -> None:
         """Take a set-point."""
         recent = self._recent
         recent.append((now, setpoint))
@@ -32,7 +35,7 @@ class SetpointStream:
             recent.popleft()
         self._mean = None
 
-    def at(self, now: float) -> AttitudeSetpoint | None:
+    def at(self, now: float) -> Setpoint | None:
         """Return the set-point to fly; None: none has come."""
         if not self._recent:
             return None
@@ -55,9 +58,12 @@ class SetpointStream:
         self._mean = None
 
 
-def _mean(setpoints: list[AttitudeSetpoint]) -> AttitudeSetpoint:
-    """Mean of set-points of one kind; else the last one."""
-    last = setpoints[-1]
+def _mean(recent: list[Setpoint]) -> Setpoint:
+    """Mean of set-points of attitudes; else the last one."""
+    last = recent[-1]
+    setpoints = [setpoint for setpoint in recent if isinstance(setpoint, AttitudeSetpoint)]
+    if not isinstance(last, AttitudeSetpoint) or len(setpoints) < len(recent):
+        return last
     attitudes = [s.attitude for s in setpoints if s.attitude is not None]
     thrusts = [s.thrust for s in setpoints if s.thrust is not None]
     if last.attitude is None or len(attitudes) < len(setpoints) or len(thrusts) < len(setpoints):

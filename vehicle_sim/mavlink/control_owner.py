@@ -6,7 +6,7 @@ from gcs.config.vehicle_settings import VehicleLinkSettings
 from gcs.mavlink.services.aircraft import Sender
 from gcs.mavlink.services.answer import Answer, rejected_for_now
 from vehicle_sim.autopilot.autopilot import Autopilot
-from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
+from vehicle_sim.autopilot.setpoint_stream import Setpoint
 
 
 class _Stream:
@@ -14,7 +14,7 @@ class _Stream:
 
     __slots__ = ("last", "previous_time", "time")
 
-    def __init__(self, setpoint: AttitudeSetpoint, now: float) -> None:
+    def __init__(self, setpoint: Setpoint, now: float) -> None:
         self.last = setpoint
         self.time = now
         self.previous_time = float("-inf")
@@ -51,7 +51,7 @@ class ControlOwner:
         owner = self._owner
         return owner is not None and owner[0] == sender[0] and self.is_stranger(sender, now)
 
-    def take(self, setpoint: AttitudeSetpoint, sender: Sender, now: float) -> None:
+    def take(self, setpoint: Setpoint, sender: Sender, now: float) -> None:
         """Take a valid set-point, unless another ground is in control. One overtaken by a later one is dropped."""
         stream = self._streams.get(sender)
         if stream is None:

@@ -3,10 +3,13 @@
 import math
 
 from gcs.mission.model import Home
+from idc_controller.rotations_float import Vector
 from vehicle_sim.world.sensors import Measurement
 
 Place = tuple[int, int, int]
 """Latitude and longitude (1e-7 deg), altitude (mm)."""
+
+_ORIGIN: Vector = (0.0, 0.0, 0.0)
 
 # The ellipsoid of WGS 84.
 _EQUATORIAL_RADIUS = 6378137.0  # m
@@ -21,7 +24,7 @@ class LocalFrame:
 
     def __init__(self, home: Home) -> None:
         self.origin: Place = round(home.latitude * 1e7), round(home.longitude * 1e7), round(home.altitude * 1e3)
-        self._longitude = home.longitude
+        self._longitude, self.altitude = home.longitude, home.altitude
         latitude = math.radians(home.latitude)
         self._sin, self._cos = math.sin(latitude), math.cos(latitude)
         normal = _EQUATORIAL_RADIUS / math.sqrt(1.0 - _ECCENTRICITY_SQUARED * self._sin**2)
@@ -47,9 +50,25 @@ class LocalFrame:
         longitude = self._longitude + math.degrees(math.atan2(east, x))
         return math.degrees(latitude), math.remainder(longitude, 360.0), altitude
 
+    def local(self, latitude: float, longitude: float, altitude: float) -> tuple[float, float, float]:
+        """Return the position (NED, m) of latitude and longitude (deg) and altitude (m): the inverse of geodetic."""
+        phi, turn = math.radians(latitude), math.radians(longitude - self._longitude)
+        sin = math.sin(phi)
+        normal = _EQUATORIAL_RADIUS / math.sqrt(1.0 - _ECCENTRICITY_SQUARED * sin * sin)
+        from_axis = (normal + altitude) * math.cos(phi)
+        x = from_axis * math.cos(turn) - self._from_axis
+        z = (normal * (1.0 - _ECCENTRICITY_SQUARED) + altitude) * sin - self._above_equator
+        return self._cos * z - self._sin * x, from_axis * math.sin(turn), -self._cos * x - self._sin * z
+
     def place_of(self, measured: Measurement) -> Place:
         """Return the place of a sample."""
-        latitude, longitude, altitude = self.geodetic(*measured.position)
+        return self.place(measured.position)
+
+    def place(self, position: Vector) -> Place:
+        """Return the place of a position (NED, m)."""
+        if position == _ORIGIN:
+            return self.origin
+        latitude, longitude, altitude = self.geodetic(*position)
         return clamp(latitude * 1e7, 32), clamp(longitude * 1e7, 32), clamp(altitude * 1e3, 32)
 
 

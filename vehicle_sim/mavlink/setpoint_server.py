@@ -6,9 +6,13 @@ from typing import Any
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.services.dispatcher import Dispatcher, Request
+from idc_controller.rotations_float import euler_of
 from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.position_setpoints import read_global, read_local
+from vehicle_sim.autopilot.setpoint_stream import Setpoint
 from vehicle_sim.autopilot.setpoints import SetpointError, StopPlan, read_setpoint, read_stop_plan
 from vehicle_sim.mavlink.control_owner import ControlOwner
+from vehicle_sim.mavlink.geodesy import LocalFrame
 
 STAMP_WRAP = 2**32 * 1e-3  # s after which stamps of 32 bits begin anew
 
@@ -32,12 +36,16 @@ class SetpointServer:
         dispatcher.register_fields(mavlink.MAVLink_trajectory_representation_bezier_message, self._on_stop_plan)
 
     def _on_setpoint(self, fields: tuple[Any, ...], request: Request) -> None:
+        self._take(lambda: read_setpoint(fields, self._autopilot.state.settings.setpoints), request)
+
+    def _take(self, read: Callable[[], Setpoint], request: Request) -> None:
+        """Pass a set-point on to who is in control, if it can be flown."""
         sender, now = request.sender, request.now
         if self._owner.is_stranger(sender, now):
             self.refused += 1
             return
         try:
-            setpoint = read_setpoint(fields, self._autopilot.state.settings.setpoints)
+            setpoint = read()
         except SetpointError:
             self.refused += 1
             return
@@ -56,3 +64,28 @@ class SetpointServer:
         # The ground estimates this clock from stamps of 32 bits, which may have begun anew since.
         start += round((now - start) / STAMP_WRAP) * STAMP_WRAP
         self._autopilot.take_stop_plan(StopPlan(start, *plan[1:]))
+
+
+class PositionSetpointServer(SetpointServer):
+    """Takes set-points of position, velocity and acceleration, too: SET_POSITION_TARGET_LOCAL_NED and _GLOBAL_INT."""
+
+    def __init__(
+        self, autopilot: Autopilot, owner: ControlOwner, clock: Callable[[float], float], frame: LocalFrame
+    ) -> None:
+        super().__init__(autopilot, owner, clock)
+        self._frame = frame
+
+    def register(self, dispatcher: Dispatcher) -> None:
+        """Take the messages of this service."""
+        super().register(dispatcher)
+        dispatcher.register_fields(mavlink.MAVLink_set_position_target_local_ned_message, self._on_local)
+        dispatcher.register_fields(mavlink.MAVLink_set_position_target_global_int_message, self._on_global)
+
+    def _on_local(self, fields: tuple[Any, ...], request: Request) -> None:
+        estimate = self._autopilot.state.navigation.estimate
+        heading = 0.0 if estimate is None else euler_of(estimate.attitude)[2]
+        self._take(lambda: read_local(fields, heading), request)
+
+    def _on_global(self, fields: tuple[Any, ...], request: Request) -> None:
+        home_altitude = self._frame.altitude - self._autopilot.home[2]
+        self._take(lambda: read_global(fields, self._frame.local, home_altitude), request)

@@ -189,9 +189,10 @@ class Telemetry:
         )  # fmt: skip
 
     def _home_position(self, now: float) -> Built:
+        home = self._autopilot.home
         return packed(
             mavlink.MAVLink_home_position_message(
-                *self._frame.origin, 0.0, 0.0, 0.0,
+                *self._frame.place(home), *home,
                 list(LEVEL), _NAN, _NAN, _NAN, self.time_boot_ms(now) * 1000,
             )
         )  # fmt: skip

@@ -24,12 +24,15 @@ from gcs.mavlink.services.streams import StreamRequests
 from gcs.mission.model import DEFAULT_HOME, Home
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.free.autopilot import FreeAutopilot
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.autopilot.vehicle_parameters import vehicle_parameters
 from vehicle_sim.mavlink.aircraft import CoupledAircraft
 from vehicle_sim.mavlink.control_owner import ControlOwner
-from vehicle_sim.mavlink.mission_plans import CoupledPlans
-from vehicle_sim.mavlink.setpoint_server import SetpointServer
+from vehicle_sim.mavlink.free_aircraft import FreeAircraft
+from vehicle_sim.mavlink.geodesy import LocalFrame
+from vehicle_sim.mavlink.mission_plans import CoupledPlans, MissionPlans
+from vehicle_sim.mavlink.setpoint_server import PositionSetpointServer, SetpointServer
 from vehicle_sim.mavlink.streams import default_intervals
 from vehicle_sim.mavlink.telemetry import Telemetry
 from vehicle_sim.world.range_sensor import RangeSample
@@ -60,18 +63,20 @@ class Vehicle:
         autopilot: AutopilotSettings = AutopilotSettings(),
         link: VehicleLinkSettings = VehicleLinkSettings(),
         arrays: OnboardArrays | None = None,
-        plans: MissionStore | None = None,
+        free: bool = False,
     ) -> None:
         """``system_id`` 1 .. 255; rates in Hz; ``boot_time`` (s) is the zero of every ``time_boot_ms``.
 
         ``clients``: ports of clients, and whether the payload unit's messages go there, too.
-        ``clock`` is what its clock shows at a time; ``arrays`` as in :class:`.Autopilot`. ``plans``: mission, fence and
-        rally points of a vehicle that flies by itself; None: it carries a payload, and takes none.
+        ``clock`` is what its clock shows at a time; ``arrays`` as in :class:`.Autopilot`; ``free``: it has no payload,
+        and flies by itself.
         """
         intervals = default_intervals(link.intervals, 1.0 / telemetry_rate)
+        if free:
+            intervals = {key: interval for key, interval in intervals.items() if key[0] == px4.AUTOPILOT_COMPONENT}
         self.system_id = system_id
-        self.parameters = vehicle_parameters(airframe, system_id, round(onboard_rate), autopilot)
-        self.autopilot = Autopilot(airframe, self.parameters, autopilot, arrays)
+        self.parameters = vehicle_parameters(airframe, system_id, round(onboard_rate), autopilot, free=free)
+        self.autopilot = (FreeAutopilot if free else Autopilot)(airframe, self.parameters, autopilot, arrays)
         self.telemetry = Telemetry(system_id, self.autopilot, home, boot_time, clock)
         self._decoder = Codec(system_id, px4.AUTOPILOT_COMPONENT)
         own, payload_unit = (
@@ -91,20 +96,29 @@ class Vehicle:
         self._sent_changes = 0
         self._latest = -math.inf
         owner = ControlOwner(self.autopilot, link)
-        self._setpoints = SetpointServer(self.autopilot, owner, clock)
+        self.aircraft: FreeAircraft | CoupledAircraft
+        """What commands and missions are carried out by."""
+        if isinstance(self.autopilot, FreeAutopilot):
+            frame = LocalFrame(home)
+            self._setpoints: SetpointServer = PositionSetpointServer(self.autopilot, owner, clock, frame)
+            self.aircraft = FreeAircraft(self.autopilot, owner, frame)
+            plans: MissionStore = MissionPlans(home, self.aircraft)
+        else:
+            plans = CoupledPlans()
+            self._setpoints = SetpointServer(self.autopilot, owner, clock)
+            self.aircraft = CoupledAircraft(self.autopilot, owner)
         self._dispatcher = Dispatcher()
         # A further protocol registers its messages here.
         self._setpoints.register(self._dispatcher)
         LinkServices(clock).register(self._dispatcher)
-        self._missions = MissionServer(system_id, plans or CoupledPlans(), owner, self._peers, link.missions)
+        self._missions = MissionServer(system_id, plans, owner, self._peers, link.missions)
         self._missions.register(self._dispatcher)
         self.telemetry.builders.update(self._missions.builders)
         streams, of_payload_unit = (
             StreamRequests(component, self.telemetry, owner, link)
             for component in (px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT)
         )
-        aircraft = CoupledAircraft(self.autopilot, owner)
-        commands = CommandServer(aircraft, owner, self.telemetry, streams)
+        commands = CommandServer(self.aircraft, owner, self.telemetry, streams)
         commands.register(self._dispatcher)
         commands.add(mavlink.MAV_CMD_DO_SET_MISSION_CURRENT, self._missions.do_set_mission_current)
         self._other_components = OtherComponents(own, payload_unit, of_payload_unit)

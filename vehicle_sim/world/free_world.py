@@ -13,11 +13,11 @@ import pybullet
 from gcs.config.tables import UavConfig, WorldConfig
 from idc_controller.arrays import Array
 from idc_controller.rotations_float import into_body
-from vehicle_sim.world.accelerometers import RANGE
 from vehicle_sim.world.errors import SimulationError, UnsupportedWorld
 from vehicle_sim.world.ground import NO_CONTACTS, Contacts
 from vehicle_sim.world.multibody import DISC_THICKNESS
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
+from vehicle_sim.world.readings import RANGE
 from vehicle_sim.world.state_kernels import STATE_COLUMNS
 from vehicle_sim.world.world_state import FreeState, UavState, flipped, quaternion_from_engine, upward_axis
 

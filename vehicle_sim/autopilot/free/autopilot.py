@@ -1,0 +1,200 @@
+"""The autopilot of a free vehicle: what any vehicle's does, and flight by position set-points and by itself."""
+
+import math
+from typing import ClassVar
+
+from gcs.mavlink import px4
+from gcs.mavlink.services.answer import ACCEPTED, Answer, rejected_for_now
+from idc_controller.rotations_float import Vector, attitude_of_force, euler_of
+from vehicle_sim.autopilot.actuation import NO_RATES
+from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.failsafe import check_failsafes
+from vehicle_sim.autopilot.flight_state import TIME_TOLERANCE
+from vehicle_sim.autopilot.free import modes
+from vehicle_sim.autopilot.free.failsafe import FREE
+from vehicle_sim.autopilot.free.mission import Mission
+from vehicle_sim.autopilot.free.position_control import Reference
+from vehicle_sim.autopilot.free.state import FreeFlightState
+from vehicle_sim.autopilot.position_setpoints import PositionSetpoint
+from vehicle_sim.autopilot.setpoint_stream import Setpoint
+from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
+from vehicle_sim.world.sensors import Measurement
+
+_GROUNDED_IN_OFFBOARD = 3.0  # s; until a vehicle that set-points have put on the ground disarms
+
+
+class FreeAutopilot(Autopilot):
+    """One vehicle without a payload; see :class:`.Autopilot`, whose interface it has."""
+
+    state: FreeFlightState
+    state_class: ClassVar[type[FreeFlightState]] = FreeFlightState
+    _control_due = -math.inf
+    _last_control = -math.inf
+    _held_by_ground_since = math.inf
+
+    @property
+    def home(self) -> Vector:
+        """Where it returns to (NED, m): where it was armed last, before that where it was first."""
+        return self.state.home or super().home
+
+    # What the ground commands
+
+    def arm(self, now: float, force: bool = False) -> Answer:
+        """See :meth:`.Autopilot.arm`; home is where it stands, and what its mode flies begins."""
+        was_armed = self.state.armed
+        answer = super().arm(now, force)
+        estimate = self.state.navigation.estimate
+        if answer == ACCEPTED and not was_armed and estimate is not None:
+            self.state.home = estimate.position
+            modes.begin(self.state)
+        return answer
+
+    def follow(self, setpoint: Setpoint, now: float) -> None:
+        """A set-point of the ground that is in control."""
+        was_in_failsafe = self.state.failsafe
+        super().follow(setpoint, now)
+        if was_in_failsafe and not self.state.failsafe:
+            self.state.flight = None
+
+    def enter_offboard(self, setpoint: Setpoint, received: float, now: float) -> Answer:
+        """Fly the set-points of a ground, the last of which was ``received`` (s) a moment ago."""
+        answer = super().enter_offboard(setpoint, received, now)
+        if answer == ACCEPTED:
+            self.state.flight = None
+            estimate = self.state.navigation.estimate
+            if estimate is not None:
+                self.state.motion.start(estimate.position, estimate.velocity, euler_of(estimate.attitude)[2])
+        return answer
+
+    def enter_mode(self, custom_mode: int, now: float) -> Answer:
+        """Any mode but OFFBOARD."""
+        answer = modes.enter_mode(self.state, custom_mode, now)
+        self._decide_anew()
+        return answer
+
+    def take_off(self, altitude: float, now: float) -> Answer:
+        """Take off to ``altitude`` (m above home; NaN: the parameter's), at once or when it is armed."""
+        self.state.take_off_altitude = altitude
+        return self.enter_mode(px4.MODE_TAKEOFF, now)
+
+    def go_to(self, position: Vector, yaw: float, speed: float, now: float) -> Answer:
+        """Fly to ``position`` (NED, m; NaN: where it is) and hold there. ``yaw`` in rad, ``speed`` in m/s; NaN: as is.
+
+        The mode is then HOLD.
+        """
+        state = self.state
+        if not state.armed or not state.land.in_air:
+            return rejected_for_now("Reposition denied: not flying")
+        state.mode, state.failsafe = px4.MODE_HOLD, False
+        state.speed = speed if speed > 0.0 else math.nan
+        state.fly([state.goal(position, yaw, hold=math.inf)])
+        self._decide_anew()
+        return ACCEPTED
+
+    def change_speed(self, speed: float, now: float) -> Answer:
+        """Fly with another horizontal speed (m/s) from now on, up to the next mode; not above 0: the parameter's."""
+        state = self.state
+        if not state.armed:
+            return rejected_for_now("Speed change denied: not flying")
+        state.speed = speed if speed > 0.0 else math.nan
+        return ACCEPTED
+
+    def take_mission(self, mission: Mission) -> None:
+        """Have another mission from now on; one that is being flown is flown from its current item."""
+        state = self.state
+        state.mission = mission
+        if state.armed and state.mode == px4.MODE_MISSION and not state.failsafe:
+            if mission.steps:
+                modes.fly_mission(state)
+            else:
+                self.enter_mode(px4.MODE_HOLD, state.now)
+
+    def set_current_item(self, index: int) -> None:
+        """Go on with item ``index`` of the mission."""
+        state = self.state
+        state.mission.restart(index)
+        if state.armed and state.mode == px4.MODE_MISSION and not state.failsafe:
+            modes.fly_mission(state)
+
+    # The onboard loop
+
+    def _supervise(self, now: float) -> None:
+        state = self.state
+        estimate = state.navigation.estimate
+        assert estimate is not None
+        if state.home is None:
+            state.home = estimate.position
+        check_failsafes(FREE, state, now)
+        if state.armed and state.land.in_air:
+            self._check_ground(estimate, now)
+        if not state.armed or state.flight is None or not state.flight.finished or state.failsafe:
+            return
+        if state.mode == px4.MODE_MISSION:
+            state.mission.done()
+            modes.fly_mission(state)
+        elif state.mode == px4.MODE_TAKEOFF:
+            state.mode = px4.MODE_HOLD
+            state.fly([state.goal(state.flight.place, hold=math.inf)])
+
+    def _check_ground(self, estimate: Measurement, now: float) -> None:
+        """Disarm a vehicle that sinks no more though it is commanded to."""
+        state, settings = self.state, self.state.settings.free
+        carried = state.actuation.thrust < settings.touchdown_thrust * state.airframe.mass * state.airframe.g
+        if not carried or abs(estimate.velocity[2]) > settings.touchdown_speed:
+            self._held_by_ground_since = math.inf
+            return
+        self._held_by_ground_since = min(self._held_by_ground_since, now)
+        needed = settings.touchdown_time if state.is_descending else _GROUNDED_IN_OFFBOARD
+        if now - self._held_by_ground_since < needed:
+            return
+        if state.mode == px4.MODE_MISSION and state.is_descending and not state.failsafe:
+            state.mission.done()
+        self._held_by_ground_since = math.inf
+        state.notices.append("Touch-down: disarmed")
+        state.stop()
+
+    def _decide_anew(self) -> None:
+        super()._decide_anew()
+        self.arrays.learns[0] = self.state.armed
+
+    def _idle_until(self) -> float:
+        return self._control_due - 2.0 * TIME_TOLERANCE if self.state.armed else super()._idle_until()
+
+    def _fly(self, now: float) -> None:
+        state, settings = self.state, self.state.settings.free
+        follows = state.mode == px4.MODE_OFFBOARD and not state.failsafe
+        setpoint = state.setpoints.at(now) if follows else None
+        if isinstance(setpoint, AttitudeSetpoint):
+            state.reference = None
+            state.actuation.follow(setpoint, now)
+            self._control_due = now + settings.control_interval
+            return
+        if now < self._control_due - TIME_TOLERANCE:
+            return
+        step = min(now - self._last_control, settings.step_max)
+        self._last_control, self._control_due = now, now + settings.control_interval
+        measured = state.navigation.estimate
+        assert measured is not None
+        limits = state.limits
+        if setpoint is not None:
+            limits = state.limits_of_setpoints
+            state.reference = self._reference_of(setpoint, step)
+        elif state.flight is not None:
+            state.flight.advance(state.motion, measured, limits, state.landing_speed, now, step)
+            state.reference = state.motion.reference
+            limits = state.limits_of_setpoints
+        else:
+            state.reference = None
+            level = attitude_of_force(0.0, 0.0, -1.0, euler_of(measured.attitude)[2])
+            state.actuation.command(level, NO_RATES, 0.0, now)
+            return
+        attitude, thrust = state.controller.command(state.reference, measured, limits, step)
+        state.actuation.command(attitude, NO_RATES, thrust, now)
+
+    def _reference_of(self, setpoint: PositionSetpoint, step: float) -> Reference:
+        """Return what to fly of a set-point; without a yaw it keeps the last, or turns with the yaw rate."""
+        motion = self.state.motion
+        rate = 0.0 if math.isnan(setpoint.yaw_rate) else setpoint.yaw_rate
+        yaw = motion.yaw + rate * step if math.isnan(setpoint.yaw) else setpoint.yaw
+        motion.yaw = math.remainder(yaw, 2.0 * math.pi)
+        return Reference(setpoint.position, setpoint.velocity, setpoint.acceleration, motion.yaw, rate)

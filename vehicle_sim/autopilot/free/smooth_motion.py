@@ -1,0 +1,83 @@
+"""A set-point that moves to goals with limited speed, acceleration and jerk, as PX4's trajectory generator."""
+
+import math
+
+from gcs.config.vehicle_settings import FreeFlightSettings
+from idc_controller.rotations_float import Vector
+from vehicle_sim.autopilot.free.position_control import Reference, SpeedLimits
+
+
+class SmoothMotion:
+    """Position (m), velocity (m/s), acceleration (m/s2) in the world (NED) and yaw (rad) of the set-point."""
+
+    def __init__(self, settings: FreeFlightSettings) -> None:
+        self._settings = settings
+        self.position: Vector = (0.0, 0.0, 0.0)
+        self.velocity: Vector = (0.0, 0.0, 0.0)
+        self._acceleration: Vector = (0.0, 0.0, 0.0)
+        self.yaw = 0.0
+
+    def start(self, position: Vector, velocity: Vector, yaw: float) -> None:
+        """Begin from a state of the vehicle."""
+        self.position, self.velocity, self._acceleration, self.yaw = position, velocity, (0.0, 0.0, 0.0), yaw
+
+    @property
+    def reference(self) -> Reference:
+        """The set-point now."""
+        return Reference(self.position, self.velocity, self._acceleration, self.yaw)
+
+    def to(self, goal: Vector, limits: SpeedLimits, step: float) -> None:
+        """Move on towards a ``goal`` for a ``step`` (s).
+
+        The slower of the horizontal and the vertical part gives the time for both, so that the path is about straight.
+        """
+        settings = self._settings
+        x, y, z = (there - here for there, here in zip(goal, self.position, strict=True))
+        side, climb = math.hypot(x, y), abs(z)
+        v_side = min(limits.horizontal, self._stopping_speed(side, settings.acceleration))
+        v_climb = min(
+            limits.up if z < 0.0 else limits.down, self._stopping_speed(climb, settings.vertical_acceleration)
+        )
+        if side > settings.straight_from and climb > settings.straight_from:
+            time = max(side / v_side, climb / v_climb)
+            v_side, v_climb = side / time, climb / time
+        share = v_side / side if side > 0.0 else 0.0
+        self.with_velocity((x * share, y * share, math.copysign(v_climb, z)), step)
+
+    def with_velocity(self, velocity: Vector, step: float) -> None:
+        """Move on towards a ``velocity`` (m/s) for a ``step`` (s)."""
+        settings = self._settings
+        a_x, a_y, a_z = (
+            settings.velocity_rate * (wanted - now) for wanted, now in zip(velocity, self.velocity, strict=True)
+        )
+        size = math.hypot(a_x, a_y)
+        if size > settings.acceleration:
+            a_x, a_y = a_x * settings.acceleration / size, a_y * settings.acceleration / size
+        a_z = min(max(a_z, -settings.vertical_acceleration), settings.vertical_acceleration)
+        change_max = settings.jerk * step
+        b_x, b_y, b_z = (
+            before + min(max(wanted - before, -change_max), change_max)
+            for wanted, before in zip((a_x, a_y, a_z), self._acceleration, strict=True)
+        )
+        self._acceleration = b_x, b_y, b_z
+        v_x, v_y, v_z = self.velocity
+        w_x, w_y, w_z = self.velocity = v_x + b_x * step, v_y + b_y * step, v_z + b_z * step
+        x, y, z = self.position
+        half = 0.5 * step
+        self.position = x + half * (v_x + w_x), y + half * (v_y + w_y), z + half * (v_z + w_z)
+
+    def turn_to(self, yaw: float, step: float) -> None:
+        """Turn towards a ``yaw`` (rad), the shorter way, for a ``step`` (s)."""
+        change_max = self._settings.yaw_rate * step
+        left = math.remainder(yaw - self.yaw, 2.0 * math.pi)
+        self.yaw = math.remainder(self.yaw + min(max(left, -change_max), change_max), 2.0 * math.pi)
+
+    def _stopping_speed(self, distance: float, acceleration: float) -> float:
+        """Return the speed (m/s) from which it comes to rest within a ``distance`` (m).
+
+        Braking with ``acceleration`` (m/s2), which the jerk allows after a while; near the goal in proportion to the
+        distance.
+        """
+        b = 4.0 * acceleration * acceleration / self._settings.jerk
+        braking = 0.5 * (math.sqrt(b * b + 8.0 * acceleration * distance) - b)
+        return min(braking, self._settings.approach_rate * distance)

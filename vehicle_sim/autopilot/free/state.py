@@ -1,0 +1,119 @@
+"""The state of a free vehicle's flight, and the transitions that its modes and failsafes share."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from gcs.mavlink import px4
+from idc_controller.rotations_float import Vector, euler_of
+from vehicle_sim.autopilot.flight_state import FlightState
+from vehicle_sim.autopilot.free import parameters as names
+from vehicle_sim.autopilot.free.auto_flight import AutoFlight, Brake, Descent, Goal, Phase
+from vehicle_sim.autopilot.free.mission import Mission
+from vehicle_sim.autopilot.free.position_control import PositionController, Reference, SpeedLimits
+from vehicle_sim.autopilot.free.smooth_motion import SmoothMotion
+
+
+@dataclass(eq=False)
+class FreeFlightState(FlightState):
+    """What the parts of a free vehicle's autopilot share, beside what any vehicle's do."""
+
+    home: Vector | None = None
+    """Where it was armed last, before that where it was first (NED, m)."""
+    flight: AutoFlight | None = None
+    """What it flies by itself; None: nothing, or set-points."""
+    failsafe_mode: int = px4.MODE_HOLD
+    """The mode that is flown in a failsafe."""
+    failsafe_since: float = -math.inf
+    """s"""
+    mission: Mission = field(default_factory=Mission)
+    take_off_altitude: float = math.nan
+    """m above home, of the next take-off; NaN: the parameter's."""
+    speed: float = math.nan
+    """m/s, horizontal, as commanded; NaN: the parameter's."""
+    reference: Reference | None = None
+    """What the position control follows; None: nothing."""
+
+    def __post_init__(self) -> None:
+        airframe, settings = self.airframe, self.settings.free
+        self.motion = SmoothMotion(settings)
+        self.controller = PositionController(airframe.mass, airframe.rotors.thrust_max, airframe.g, settings)
+
+    @property
+    def flown_mode(self) -> int:
+        """The custom mode that is flown, which in a failsafe is not the one that was commanded."""
+        return self.failsafe_mode if self.failsafe else self.mode
+
+    @property
+    def is_descending(self) -> bool:
+        """Return True if it descends to the ground."""
+        return self.flight is not None and self.flight.is_landing
+
+    @property
+    def limits(self) -> SpeedLimits:
+        """Speeds at which it flies by itself (m/s)."""
+        get = self.parameters
+        cruise = get[names.CRUISE_SPEED] if math.isnan(self.speed) else self.speed
+        return SpeedLimits(min(cruise, get[names.SPEED_MAX]), get[names.CLIMB_MAX], get[names.SINK_MAX])
+
+    @property
+    def limits_of_setpoints(self) -> SpeedLimits:
+        """Speeds within which it follows set-points (m/s)."""
+        get = self.parameters
+        return SpeedLimits(get[names.SPEED_MAX], get[names.CLIMB_MAX], get[names.SINK_MAX])
+
+    def landing_speed(self, height: float) -> float:
+        """Return the speed of a descent (m/s) at a ``height`` above the ground (m), as PX4's."""
+        settings = self.settings.free
+        slow, fast = self.parameters[px4.PARAM_LAND_SPEED], self.parameters[names.SINK_MAX]
+        span = settings.landing_slow_from - settings.landing_slow_below
+        share = min(max((height - settings.landing_slow_below) / span, 0.0), 1.0)
+        return slow + share * (max(fast, slow) - slow)
+
+    def fly(self, phases: Sequence[Phase]) -> None:
+        """Fly ``phases`` from the state of the vehicle, or of the set-point that it follows already."""
+        measured = self.navigation.estimate
+        assert measured is not None
+        if self.flight is None:
+            yaw = euler_of(measured.attitude)[2]
+            velocity = measured.velocity if self.land.in_air else (0.0, 0.0, 0.0)
+            self.motion.start(measured.position, velocity, yaw)
+            if not self.land.in_air:
+                self.controller.reset()
+        self.flight = AutoFlight(phases, self.settings.free)
+
+    def hold_here(self) -> None:
+        """Brake and stay."""
+        self.fly([Brake(), self.goal(hold=math.inf)])
+
+    def land_here(self) -> None:
+        """Brake and descend."""
+        self.fly([Brake(), Descent(self.ground)])
+
+    def goal(
+        self,
+        position: Vector = (math.nan, math.nan, math.nan),
+        yaw: float = math.nan,
+        hold: float = 0.0,
+        radius: float = math.nan,
+        *,
+        looks_ahead: bool = True,
+        climb_speed: float = math.inf,
+    ) -> Goal:
+        """Return a goal; without a ``radius`` with that of the parameter."""
+        if math.isnan(radius):
+            radius = self.parameters[names.ACCEPTANCE_RADIUS]
+        return Goal(position, radius, yaw, hold, looks_ahead, climb_speed)
+
+    @property
+    def ground(self) -> float:
+        """Where the ground is taken to be (NED, m)."""
+        return 0.0 if self.home is None else self.home[2]
+
+    def stop(self) -> None:
+        """Rotors off. The vehicle is then in HOLD."""
+        super().stop()
+        self.flight = None
+        self.reference = None
+        self.speed = self.take_off_altitude = math.nan
+        self.controller.reset()

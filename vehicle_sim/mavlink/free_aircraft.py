@@ -1,0 +1,110 @@
+"""A vehicle without a payload as the MAVLink services command it."""
+
+import math
+from collections.abc import Callable, Sequence
+
+from gcs.mavlink import px4
+from gcs.mavlink.services.aircraft import Reposition, Sender
+from gcs.mavlink.services.answer import ACCEPTED, Answer, denied, rejected_for_now
+from gcs.mavlink.services.mission_item import MissionItem
+from vehicle_sim.autopilot.free.autopilot import FreeAutopilot
+from vehicle_sim.autopilot.free.mission import Mission
+from vehicle_sim.mavlink.control_owner import ControlOwner
+from vehicle_sim.mavlink.geodesy import LocalFrame
+from vehicle_sim.mavlink.mission_steps import steps_of
+
+
+class FreeAircraft:
+    """Does what PX4 does; places and altitudes become those of the local frame here."""
+
+    def __init__(self, autopilot: FreeAutopilot, owner: ControlOwner, frame: LocalFrame) -> None:
+        self._autopilot = autopilot
+        self._owner = owner
+        self._frame = frame
+        self._items: tuple[MissionItem, ...] = ()
+
+    def arm(self, now: float, force: bool = False) -> Answer:
+        """See :meth:`.FreeAutopilot.arm`."""
+        return self._autopilot.arm(now, force)
+
+    def disarm(self, now: float, force: bool = False) -> Answer:
+        """See :meth:`.Autopilot.disarm`."""
+        return self._autopilot.disarm(force)
+
+    def enter_mode(self, custom_mode: int, sender: Sender, now: float) -> Answer:
+        """Enter a mode; OFFBOARD on the set-points of ``sender``."""
+        if custom_mode == px4.MODE_OFFBOARD:
+            return self._owner.enter_offboard(sender, now)
+        return self._autopilot.enter_mode(custom_mode, now)
+
+    def take_off(self, altitude: float, now: float) -> Answer:
+        """Take off to ``altitude`` (m above mean sea level; NaN: the parameter's height above home)."""
+        return self._autopilot.take_off(altitude - self._frame.altitude + self._autopilot.home[2], now)
+
+    def reposition(self, goal: Reposition, now: float) -> Answer:
+        """Fly to a place and hold there."""
+        down = self._frame.altitude - goal.altitude
+        if math.isfinite(goal.latitude) and math.isfinite(goal.longitude):
+            altitude = goal.altitude
+            if math.isnan(altitude):
+                estimate = self._autopilot.state.navigation.estimate
+                altitude = self._frame.altitude - (0.0 if estimate is None else estimate.position[2])
+            north, east, down = self._frame.local(goal.latitude, goal.longitude, altitude)
+        else:
+            north = east = math.nan
+        return self._autopilot.go_to((north, east, down), goal.yaw, goal.speed, now)
+
+    def change_speed(self, speed: float, now: float) -> Answer:
+        """Fly with another horizontal speed (m/s) from now on."""
+        return self._autopilot.change_speed(speed, now)
+
+    def start_mission(self, first: int, now: float) -> Answer:
+        """Fly the mission from item ``first`` on."""
+        if not 0 <= first < max(len(self._items), 1):
+            return denied(f"Mission denied: there is no item {first}")
+        self._autopilot.state.mission.restart(first)
+        return self._autopilot.enter_mode(px4.MODE_MISSION, now)
+
+    def pause(self, now: float) -> Answer:
+        """Hold; the mission's current item stays."""
+        return self._autopilot.enter_mode(px4.MODE_HOLD, now)
+
+    def resume(self, now: float) -> Answer:
+        """Go on with the mission that was paused."""
+        if not self._items:
+            return rejected_for_now("Mission denied: no mission")
+        return self._autopilot.enter_mode(px4.MODE_MISSION, now)
+
+    # The mission
+
+    def take_mission(self, items: Sequence[MissionItem], current: int, on_reached: Callable[[int], None]) -> Answer:
+        """Have another mission, of which ``current`` is flown first; ``on_reached`` is called with each item done."""
+        if items and not 0 <= current < len(items):
+            return denied(f"Mission denied: there is no item {current}")
+        self._items = tuple(items)
+        self._autopilot.take_mission(
+            Mission(steps_of(self._items, self._frame, self._autopilot.home), current, on_reached=on_reached)
+        )
+        return ACCEPTED
+
+    @property
+    def current_item(self) -> int:
+        """The item of the mission that is flown, or will be."""
+        return self._autopilot.state.mission.current
+
+    @property
+    def mission_finished(self) -> bool:
+        """Return True if all items have been done."""
+        return self._autopilot.state.mission.finished
+
+    @property
+    def mission_active(self) -> bool:
+        """Return True if it flies the mission."""
+        return self._autopilot.armed and self._autopilot.mode == px4.MODE_MISSION
+
+    def set_current_item(self, index: int, now: float) -> Answer:
+        """Go on with item ``index``."""
+        if not 0 <= index < len(self._items):
+            return denied(f"Mission denied: there is no item {index}")
+        self._autopilot.set_current_item(index)
+        return ACCEPTED
