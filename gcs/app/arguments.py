@@ -143,8 +143,10 @@ def time_span(text: str) -> float:
 
 VEHICLES_MIN = 3
 """Fewer vehicles cannot hold a payload level."""
-VEHICLES = partial(whole_number, least=VEHICLES_MIN, most=99)
-"""Number of vehicles; system id 100 is the payload unit's."""
+VEHICLES_MAX = 99
+"""System id 100 is the payload unit's."""
+VEHICLES = partial(whole_number, least=VEHICLES_MIN, most=VEHICLES_MAX)
+"""Number of vehicles."""
 SEED = partial(whole_number, least=0, most=2**63 - 1)
 """Seed of a generator of random numbers."""
 SPEED = partial(number, least=0.001, most=1000.0)

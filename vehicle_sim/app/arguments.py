@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from gcs.app.arguments import SEED, SPEED, VEHICLES, Parser, Version, add_settings, whole_number
+from gcs.app.arguments import SEED, SPEED, VEHICLES_MAX, VEHICLES_MIN, Parser, Version, add_settings, whole_number
 from gcs.app.logs import add_log_arguments
 from gcs.errors import UnusableInput
 from gcs.mavlink.address import GROUND_PORT, SDK_PORT, THIS_MACHINE, VEHICLE_PORT, Address, resolved
@@ -23,7 +23,9 @@ time all its streams, from the start and for ever, to port 14540 + i - 1, where 
 14550, where ground stations listen for all vehicles (--ground-port), of this machine or another (--ground-host).
 Whoever sends MAVLink to 14580 and on is answered there, and gets the streams until it has been silent for 10 s. The
 payload's navigation unit is a system of its own, with id 100: every vehicle forwards its messages to whoever calls in
-and to its SDK, vehicle 1 to the ground stations. Vehicles whose set-points stop brake and hold, then land."""
+and to its SDK, vehicle 1 to the ground stations. Vehicles whose set-points stop brake and hold, then land.
+
+With --free there is no payload: each vehicle takes off, flies missions, returns and lands by itself, as a PX4 does."""
 
 _EPILOG = """\
 On standard output, line by line: the clock's address (lockstep only), every vehicle's, and "ready".
@@ -31,6 +33,7 @@ On standard output, line by line: the clock's address (lockstep only), every veh
 Examples:
   vehicle-sim                                    four vehicles on ports 14580 .. 14583, in real time
   vehicle-sim --vehicles 6 --speed 2             six, twice as fast
+  vehicle-sim --free --vehicles 2                two without a payload, each for a MAVLink client of its own
   vehicle-sim --mission missions/figure_eight.toml --run-dir runs/by-hand
                                                  the mission's home, obstacles, seed and system; truth.csv
   gcs fly missions/figure_eight.toml --realtime --connect
@@ -45,7 +48,8 @@ def parse(argv: list[str] | None) -> argparse.Namespace:
     """Return the options. Raises :class:`~gcs.errors.UnusableInput`; ``--help`` and ``--version`` exit."""
     parser = Parser(prog="vehicle-sim", description=_DESCRIPTION, epilog=_EPILOG)
     add = parser.add_argument
-    add("--vehicles", type=VEHICLES, metavar="N", help="number of vehicles (default: the system file's)")
+    add("--vehicles", metavar="N", help="number of vehicles (default: the system file's)")
+    add("--free", action="store_true", help="vehicles without a payload, in a row, each of which flies by itself")
     add("--mission", type=Path, metavar="M",
         help="mission file (.toml, .plan, .waypoints) that gives home, obstacles, seed and system")  # fmt: skip
     add("--config", type=Path, metavar="C", help="system file (default: the mission's, else the packaged one)")
@@ -81,6 +85,13 @@ def parse(argv: list[str] | None) -> argparse.Namespace:
     add("--version", action=Version)
     options, unknown = parser.parse_known_args(argv)
     parser.refuse_unknown(unknown)
+    if options.vehicles is not None:
+        try:
+            options.vehicles = whole_number(options.vehicles, 1 if options.free else VEHICLES_MIN, VEHICLES_MAX)
+        except argparse.ArgumentTypeError as error:
+            parser.error(f"--vehicles: {error}")
+    if options.free and options.view:
+        parser.error("--view: shows a team with its payload; not with --free")
     if options.with_parent:  # which logs what it learns of the vehicles itself
         options.quiet += 1
     if options.lockstep and options.speed is not None:

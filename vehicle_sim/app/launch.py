@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from gcs.config import SystemConfig, read_system
 from gcs.config.overrides import with_settings
 from gcs.drivers.live_view import LiveView
+from gcs.errors import UnusableInput
 from gcs.mavlink.address import THIS_MACHINE, VEHICLE_PORT
 from gcs.mission.faults import check_faults_of
 from gcs.mission.model import Mission
@@ -82,6 +83,7 @@ def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack
                 sdk_address=ports.sdk,
                 faults=injector,
                 gui=options.gui,
+                free=options.free,
             )
         )
     sockets = started.enter_context(
@@ -116,25 +118,39 @@ def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack
 def _read(options: Namespace) -> tuple[Mission | None, SystemConfig]:
     mission = None if options.mission is None else read_mission(options.mission, options.config, options.settings)
     config = with_settings(read_system(options.config), options.settings or {}) if mission is None else mission.system
-    if options.vehicles is not None:
+    if options.free:
+        number = options.vehicles or config.team.vehicles
+        config = dataclasses.replace(config, team=dataclasses.replace(config.team, vehicles=number, attachments=None))
+    elif options.vehicles is not None:
         config = config.with_vehicles(options.vehicles)
     if mission is not None:
+        if options.free:
+            _refuse_faults_of_payload(mission)
         mission = dataclasses.replace(mission, system=config)
         check_faults_of(mission)
     return mission, config
+
+
+def _refuse_faults_of_payload(mission: Mission) -> None:
+    """Raise :class:`UnusableInput` for a fault of a payload that is not there."""
+    for fault in mission.faults:
+        if fault.kind.startswith("payload_") or str(fault.settings.get("channel", "")).startswith("payload_"):
+            raise UnusableInput(
+                f"{mission.path}: line {fault.line}: fault {fault.kind}: with --free there is no payload"
+            )
 
 
 def _truth_log(
     options: Namespace, arguments: list[str], seed: int, mission: Mission | None, config: SystemConfig
 ) -> TruthLog:
     if options.with_parent:  # the folder is the parent's, and so is the manifest
-        return TruthLog(options.run_dir, config.team.vehicles)
+        return TruthLog(options.run_dir, config.team.vehicles, payload=not options.free)
     with NewRunFolder("", options.run_dir) as folder:
         write_manifest(
             folder.path, command=["vehicle-sim", *arguments], seed=seed, mission=mission, system=config,
             start=datetime.now(UTC),
         )  # fmt: skip
-        truth = TruthLog(folder.path, config.team.vehicles)
+        truth = TruthLog(folder.path, config.team.vehicles, payload=not options.free)
         folder.keep()
     return truth
 
@@ -164,6 +180,8 @@ def _announce(sockets: SwarmSockets, options: Namespace) -> None:
         default = sockets.vehicles[0].getsockname() == (THIS_MACHINE, VEHICLE_PORT)
         addresses = "" if default else "".join(f" {url(endpoint)}" for endpoint in sockets.vehicles)
         hint = f"gcs fly MISSION --realtime --connect{addresses}"
+        if options.free:
+            hint = "no payload: for MAVLink clients at 14540 and on, and 14550"
         if options.lockstep:
             hint = "lockstep: waiting for a ground station at the clock"
         print(f"({hint}; Ctrl-C ends)", flush=True)

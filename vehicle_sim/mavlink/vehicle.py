@@ -121,7 +121,7 @@ class Vehicle:
         commands = CommandServer(self.aircraft, owner, self.telemetry, streams)
         commands.register(self._dispatcher)
         commands.add(mavlink.MAV_CMD_DO_SET_MISSION_CURRENT, self._missions.do_set_mission_current)
-        self._other_components = OtherComponents(own, payload_unit, of_payload_unit)
+        self._other_components = OtherComponents(own, own if free else payload_unit, of_payload_unit)
         ParameterServer(self.parameters, owner).register(self._dispatcher)
 
     @property

@@ -17,7 +17,7 @@ from vehicle_sim.world.errors import SimulationError, UnsupportedWorld
 from vehicle_sim.world.ground import NO_CONTACTS, Contacts
 from vehicle_sim.world.multibody import DISC_THICKNESS
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
-from vehicle_sim.world.readings import RANGE
+from vehicle_sim.world.readings import ACCELEROMETER_RANGE
 from vehicle_sim.world.state_kernels import STATE_COLUMNS
 from vehicle_sim.world.world_state import FreeState, UavState, flipped, quaternion_from_engine, upward_axis
 
@@ -150,7 +150,7 @@ class FreeWorld:
             return ()
         rate, g = self.physics_hz, self.g
         changes = enumerate(self._changes.tolist(), start=1)
-        return [i for i, (x, y, z) in changes if math.hypot(x * rate, y * rate, z * rate - g) > RANGE]
+        return [i for i, (x, y, z) in changes if math.hypot(x * rate, y * rate, z * rate - g) > ACCELEROMETER_RANGE]
 
     def close(self) -> None:
         """End the world; harmless when it has ended."""
