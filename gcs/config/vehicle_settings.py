@@ -116,7 +116,8 @@ class FreeFlightSettings(SettingsTable):
     thrust_share_max: float = 0.9  # of the largest thrust; the rest is for the attitude
     acceleration: float = 3.0  # m/s2; horizontal, of moving set-points, PX4's MPC_ACC_HOR
     vertical_acceleration: float = 3.0  # m/s2; vertical
-    jerk: float = 8.0  # m/s3; of moving set-points
+    jerk: float = 4.0  # m/s3; of moving set-points, PX4's MPC_JERK_AUTO
+    attitude_lag: float = 0.2  # s; with which the attitude follows its set-point
     velocity_rate: float = 4.0  # 1/s; with which their velocity follows
     approach_rate: float = 1.0  # 1/s; speed over distance near the goal
     straight_from: float = 0.5  # m; distance above which the path to a goal is kept straight

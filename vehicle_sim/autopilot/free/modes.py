@@ -41,7 +41,10 @@ def fly_mission(state: FreeFlightState) -> None:
         if mission.finished:
             state.mode = px4.MODE_HOLD
             state.notices.append("Mission finished, loitering")
-            _hold(state)
+            if state.flight is None or math.isnan(sum(state.flight.place)):
+                _hold(state)
+            else:
+                state.fly([state.goal(state.flight.place, hold=math.inf)])
             return
         step = mission.step
         if step.action is Action.RETURN:

@@ -15,16 +15,21 @@ class SmoothMotion:
         self.position: Vector = (0.0, 0.0, 0.0)
         self.velocity: Vector = (0.0, 0.0, 0.0)
         self._acceleration: Vector = (0.0, 0.0, 0.0)
+        self._jerk = 0.0, 0.0
+        """Horizontal, of the last step (m/s3)."""
         self.yaw = 0.0
 
     def start(self, position: Vector, velocity: Vector, yaw: float) -> None:
         """Begin from a state of the vehicle."""
         self.position, self.velocity, self._acceleration, self.yaw = position, velocity, (0.0, 0.0, 0.0), yaw
+        self._jerk = 0.0, 0.0
 
     @property
     def reference(self) -> Reference:
-        """The set-point now."""
-        return Reference(self.position, self.velocity, self._acceleration, self.yaw)
+        """The set-point now, its acceleration ahead of it by as much as the attitude lags."""
+        (a_x, a_y, a_z), lead = self._acceleration, self._settings.attitude_lag
+        ahead = a_x + lead * self._jerk[0], a_y + lead * self._jerk[1], a_z
+        return Reference(self.position, self.velocity, ahead, self.yaw)
 
     def to(self, goal: Vector, limits: SpeedLimits, step: float) -> None:
         """Move on towards a ``goal`` for a ``step`` (s).
@@ -47,18 +52,17 @@ class SmoothMotion:
     def with_velocity(self, velocity: Vector, step: float) -> None:
         """Move on towards a ``velocity`` (m/s) for a ``step`` (s)."""
         settings = self._settings
-        a_x, a_y, a_z = (
-            settings.velocity_rate * (wanted - now) for wanted, now in zip(velocity, self.velocity, strict=True)
-        )
-        size = math.hypot(a_x, a_y)
-        if size > settings.acceleration:
-            a_x, a_y = a_x * settings.acceleration / size, a_y * settings.acceleration / size
-        a_z = min(max(a_z, -settings.vertical_acceleration), settings.vertical_acceleration)
+        off_x, off_y, off_z = (wanted - now for wanted, now in zip(velocity, self.velocity, strict=True))
+        side = math.hypot(off_x, off_y)
+        share = self._acceleration_for(side, settings.acceleration) / side if side > 0.0 else 0.0
+        a_x, a_y = share * off_x, share * off_y
+        a_z = math.copysign(self._acceleration_for(abs(off_z), settings.vertical_acceleration), off_z)
         change_max = settings.jerk * step
         b_x, b_y, b_z = (
             before + min(max(wanted - before, -change_max), change_max)
             for wanted, before in zip((a_x, a_y, a_z), self._acceleration, strict=True)
         )
+        self._jerk = (b_x - self._acceleration[0]) / step, (b_y - self._acceleration[1]) / step
         self._acceleration = b_x, b_y, b_z
         v_x, v_y, v_z = self.velocity
         w_x, w_y, w_z = self.velocity = v_x + b_x * step, v_y + b_y * step, v_z + b_z * step
@@ -71,6 +75,11 @@ class SmoothMotion:
         change_max = self._settings.yaw_rate * step
         left = math.remainder(yaw - self.yaw, 2.0 * math.pi)
         self.yaw = math.remainder(self.yaw + min(max(left, -change_max), change_max), 2.0 * math.pi)
+
+    def _acceleration_for(self, change: float, limit: float) -> float:
+        """Return the acceleration (m/s2) for a ``change`` of the velocity (m/s), which the jerk can still take back."""
+        settings = self._settings
+        return min(settings.velocity_rate * change, math.sqrt(1.6 * settings.jerk * change), limit)
 
     def _stopping_speed(self, distance: float, acceleration: float) -> float:
         """Return the speed (m/s) from which it comes to rest within a ``distance`` (m).
