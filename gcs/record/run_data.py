@@ -19,7 +19,7 @@ from gcs.record.clearance import Formation, ObstacleTrack
 from gcs.record.obstacle_shapes import OBSTACLE_SHAPES, read_shape
 from gcs.record.reader import Table, read_json, read_table
 from gcs.record.run_folder import MANIFEST, SUMMARY
-from gcs.record.tables import ESTIMATE, OBSTACLES, REFERENCE, REFERENCE_COLUMNS, STEPS, TRUTH
+from gcs.record.tables import ESTIMATE, OBSTACLES, PAYLOAD_COLUMNS, REFERENCE, REFERENCE_COLUMNS, STEPS, TRUTH
 from idc_controller.arrays import Array
 from idc_controller.errors import ShapeError
 from idc_controller.geometry.shape import Columns
@@ -196,6 +196,8 @@ def read_run(run_dir: Path | str, tables: Mapping[str, Table] | None = None) -> 
     # A truth of no rows (its world never ran) must not hide what the ground recorded.
     from_truth = len(tables[TRUTH]) > 0
     state = tables[TRUTH if from_truth else ESTIMATE]
+    if from_truth and PAYLOAD_COLUMNS[0] not in (state.dtype.names or ()):
+        raise UnusableInput(f"{folder}: vehicles without a payload flew here: nothing but its tables can be shown")
     n = sum(name.endswith("_thrust_n") for name in state.dtype.names or ())
 
     def stack(prefix: str, parts: Iterable[str]) -> Array:

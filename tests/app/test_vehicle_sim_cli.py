@@ -37,6 +37,7 @@ def somewhere_else(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("DISPLAY", raising=False)
     (tmp_path / "mission.toml").write_text(MISSION)
+    (tmp_path / "load.toml").write_text(MISSION + '[[fault]]\nkind = "payload_mass"\nstart = 1.0\nchange = 0.2\n')
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "something").touch()
     (tmp_path / "bad.toml").write_text((MISSIONS / "system.toml").read_text().replace("mass = 3.1", "mass = -3.1"))
@@ -47,6 +48,10 @@ def somewhere_else(tmp_path, monkeypatch):
     ("arguments", "reason"),
     [
         ("--vehicles 16", "16 vehicles: the physics engine is wrong beyond 15"),
+        ("--vehicles 200", "--vehicles: '200' is not a whole number from 3 to 99"),
+        ("--free --vehicles 0", "--vehicles: '0' is not a whole number from 1 to 99"),
+        ("--free --view", "--view: shows a team with its payload; not with --free"),
+        ("--free --mission load.toml", "load.toml: line 18: fault payload_mass: with --free there is no payload"),
         ("--mission none.toml", "none.toml: cannot be read"),
         ("--mission odd.toml", "odd.toml: line 17: obstacle[1].colour: unknown key"),
         ("--config bad.toml", "payload.mass: "),

@@ -7,9 +7,11 @@ import pymavlink.dialects.v20.common as mavlink
 import pytest
 from free_bench import GROUND, FreeBench, config_of, item, mode
 
+from gcs.errors import UnusableInput
 from gcs.mavlink import px4
 from gcs.mission.model import Fault, Obstacle
 from gcs.record.reader import read_table
+from gcs.record.run_data import read_run
 from gcs.record.tables import truth_columns
 from idc_controller.geometry.box import Wall
 from vehicle_sim.faults.fault_injector import FaultInjector
@@ -67,6 +69,11 @@ def test_truth_has_columns_of_the_vehicles_alone(flown):
     assert not (folder / "forces.csv").exists()
     modes = read_table(folder / "modes.csv")
     assert {*modes["mode"]} >= {"AUTO.MISSION", "AUTO.LOITER"}
+
+
+def test_report_of_vehicles_without_a_payload_is_refused(flown):
+    with pytest.raises(UnusableInput, match="vehicles without a payload flew here"):
+        read_run(flown[0])
 
 
 def test_same_seed_gives_the_same_bytes(flown, tmp_path):

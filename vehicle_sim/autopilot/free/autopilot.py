@@ -3,6 +3,8 @@
 import math
 from typing import ClassVar
 
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+
 from gcs.mavlink import px4
 from gcs.mavlink.services.answer import ACCEPTED, Answer, rejected_for_now
 from idc_controller.rotations_float import Vector, attitude_of_force, euler_of
@@ -37,6 +39,13 @@ class FreeAutopilot(Autopilot):
         """Where it returns to (NED, m): where it was armed last, before that where it was first."""
         return self.state.home or super().home
 
+    @property
+    def landed_state(self) -> int:
+        """MAV_LANDED_STATE."""
+        found = super().landed_state
+        takes_off = found == mavlink.MAV_LANDED_STATE_IN_AIR and self.mode == px4.MODE_TAKEOFF
+        return mavlink.MAV_LANDED_STATE_TAKEOFF if takes_off else found
+
     # What the ground commands
 
     def arm(self, now: float, force: bool = False) -> Answer:
@@ -67,15 +76,19 @@ class FreeAutopilot(Autopilot):
         return answer
 
     def enter_mode(self, custom_mode: int, now: float) -> Answer:
-        """Any mode but OFFBOARD."""
-        answer = modes.enter_mode(self.state, custom_mode, now)
+        """Any mode but OFFBOARD; a take-off is to the height of the parameter."""
+        self.state.take_off_altitude = math.nan
+        return self._enter(custom_mode)
+
+    def _enter(self, custom_mode: int) -> Answer:
+        answer = modes.enter_mode(self.state, custom_mode)
         self._decide_anew()
         return answer
 
     def take_off(self, altitude: float, now: float) -> Answer:
         """Take off to ``altitude`` (m above home; NaN: the parameter's), at once or when it is armed."""
         self.state.take_off_altitude = altitude
-        return self.enter_mode(px4.MODE_TAKEOFF, now)
+        return self._enter(px4.MODE_TAKEOFF)
 
     def go_to(self, position: Vector, yaw: float, speed: float, now: float) -> Answer:
         """Fly to ``position`` (NED, m; NaN: where it is) and hold there. ``yaw`` in rad, ``speed`` in m/s; NaN: as is.
@@ -104,10 +117,7 @@ class FreeAutopilot(Autopilot):
         state = self.state
         state.mission = mission
         if state.armed and state.mode == px4.MODE_MISSION and not state.failsafe:
-            if mission.steps:
-                modes.fly_mission(state)
-            else:
-                self.enter_mode(px4.MODE_HOLD, state.now)
+            modes.fly_mission(state)
 
     def set_current_item(self, index: int) -> None:
         """Go on with item ``index`` of the mission."""

@@ -13,7 +13,7 @@ from vehicle_sim.autopilot.free.state import FreeFlightState
 _EXACT = 0.3  # m, horizontal distance to a place above which a landing begins
 
 
-def enter_mode(state: FreeFlightState, custom_mode: int, now: float) -> Answer:
+def enter_mode(state: FreeFlightState, custom_mode: int) -> Answer:
     """Enter any mode but OFFBOARD. Disarmed, it begins when the vehicle is armed."""
     enter = _ENTRY.get(custom_mode)
     if enter is None:
@@ -37,7 +37,10 @@ def begin(state: FreeFlightState) -> None:
 def fly_mission(state: FreeFlightState) -> None:
     """Fly the current item of the mission, and do at once what needs no flight."""
     mission = state.mission
-    for _ in range(len(mission.steps) + 1):
+    if not mission.steps:  # cleared meanwhile
+        state.mode = px4.MODE_HOLD
+        _hold(state)
+    for _ in range(2 * len(mission.steps)):
         if mission.finished:
             state.mode = px4.MODE_HOLD
             state.notices.append("Mission finished, loitering")
