@@ -158,6 +158,32 @@ def test_speed_delay_and_timed_loiter_are_flown():
         assert bench.position() == pytest.approx((0.0, 5.0, -5.0), abs=0.3)
 
 
+def test_start_of_a_mission_arms_for_it():
+    with FreeBench() as bench:
+        bench.run(0.5)
+        aircraft = bench.vehicles[0].aircraft
+        assert aircraft.start_mission(0, bench.now).result == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
+        assert not bench.armed()
+        upload(bench, item(WAYPOINT, 50.0, 0.0, 3.0), item(mavlink.MAV_CMD_NAV_LOITER_TO_ALT, 0.0, 0.0, 4.0))
+        assert aircraft.start_mission(1, bench.now).result == mavlink.MAV_RESULT_ACCEPTED
+        assert bench.armed()
+        bench.run(8.0)
+        assert bench.position() == pytest.approx((0.0, 0.0, -4.0), abs=0.3)
+        assert aircraft.start_mission(2, bench.now).result == mavlink.MAV_RESULT_DENIED
+
+
+def test_mission_cleared_before_arming_leaves_the_vehicle_on_the_ground():
+    with FreeBench() as bench:
+        bench.run(0.5)
+        upload(bench, item(WAYPOINT, 8.0, 0.0, 4.0))
+        assert bench.command(*MISSION) == mavlink.MAV_RESULT_ACCEPTED
+        upload(bench)
+        assert bench.command(ARM, 1) == mavlink.MAV_RESULT_ACCEPTED
+        bench.run(2.0)
+        assert bench.mode_of() == "AUTO.LOITER"
+        assert bench.position()[2] == pytest.approx(-0.02, abs=0.01)
+
+
 def test_mode_is_rejected_without_a_mission():
     with FreeBench() as bench:
         bench.run(0.5)

@@ -59,11 +59,12 @@ class FreeAircraft:
         return self._autopilot.change_speed(speed, now)
 
     def start_mission(self, first: int, now: float) -> Answer:
-        """Fly the mission from item ``first`` on."""
+        """Fly the mission from item ``first`` on; as PX4 it arms for it."""
         if not 0 <= first < max(len(self._items), 1):
             return denied(f"Mission denied: there is no item {first}")
         self._autopilot.state.mission.restart(first)
-        return self._autopilot.enter_mode(px4.MODE_MISSION, now)
+        answer = self._autopilot.enter_mode(px4.MODE_MISSION, now)
+        return self._autopilot.arm(now) if answer == ACCEPTED else answer
 
     def pause(self, now: float) -> Answer:
         """Hold; the mission's current item stays."""

@@ -94,6 +94,7 @@ COMMANDS: dict[int, Reader] = {
     mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: lambda item, place: MissionStep(Action.RETURN),
     mavlink.MAV_CMD_NAV_LAND: _land,
     mavlink.MAV_CMD_NAV_TAKEOFF: _take_off,
+    mavlink.MAV_CMD_NAV_LOITER_TO_ALT: lambda item, place: MissionStep(Action.FLY, place),
     mavlink.MAV_CMD_NAV_DELAY: _delay,
     mavlink.MAV_CMD_DO_CHANGE_SPEED: _speed,
     mavlink.MAV_CMD_DO_JUMP: _jump,
@@ -104,6 +105,7 @@ _PLACES = (
     mavlink.MAV_CMD_NAV_WAYPOINT,
     mavlink.MAV_CMD_NAV_LOITER_UNLIM,
     mavlink.MAV_CMD_NAV_LOITER_TIME,
+    mavlink.MAV_CMD_NAV_LOITER_TO_ALT,
     mavlink.MAV_CMD_NAV_LAND,
     mavlink.MAV_CMD_NAV_TAKEOFF,
 )
