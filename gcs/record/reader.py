@@ -34,7 +34,8 @@ def parse_table(path: Path, header: str, rows: str) -> Table:
     columns = header.split(",") if header else [*needed]
     if path.name == TRUTH:
         uavs = sum(name.endswith("_thrust_n") for name in columns)
-        needed = truth_columns(uavs, payload=not uavs or any(name.startswith("payload_") for name in columns))
+        free = truth_columns(uavs, payload=False)  # vehicles without a payload
+        needed = free if uavs and [*free] == columns else truth_columns(uavs)
     missing = [name for name in needed if name not in columns]
     if never_written := [name for name in missing if name not in LATER_COLUMNS]:
         raise UnusableInput(f"{path}, line 1: column {never_written[0]} is missing")

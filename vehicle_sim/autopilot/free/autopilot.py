@@ -185,20 +185,17 @@ class FreeAutopilot(Autopilot):
         self._last_control, self._control_due = now, now + settings.control_interval
         measured = state.navigation.estimate
         assert measured is not None
-        limits = state.limits
         if setpoint is not None:
-            limits = state.limits_of_setpoints
             state.reference = self._reference_of(setpoint, step)
         elif state.flight is not None:
-            state.flight.advance(state.motion, measured, limits, state.landing_speed, now, step)
+            state.flight.advance(state.motion, measured, state.limits, state.landing_speed, now, step)
             state.reference = state.motion.reference
-            limits = state.limits_of_setpoints
         else:
             state.reference = None
             level = attitude_of_force(0.0, 0.0, -1.0, euler_of(measured.attitude)[2])
             state.actuation.command(level, NO_RATES, 0.0, now)
             return
-        attitude, thrust = state.controller.command(state.reference, measured, limits, step)
+        attitude, thrust = state.controller.command(state.reference, measured, state.limits_of_setpoints, step)
         state.actuation.command(attitude, NO_RATES, thrust, now)
 
     def _reference_of(self, setpoint: PositionSetpoint, step: float) -> Reference:
