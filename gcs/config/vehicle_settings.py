@@ -144,7 +144,7 @@ class AutopilotSettings(SettingsTable):
     land_detector: LandDetectorSettings = field(default_factory=LandDetectorSettings)
     free: FreeFlightSettings = field(default_factory=FreeFlightSettings)
     takeoff_altitude: float = setting(
-        2.5, "m", "MIS_TAKEOFF_ALT, reported to the ground; AUTO.TAKEOFF is denied", ge=0.0, le=80.0
+        2.5, "m", "MIS_TAKEOFF_ALT: height of AUTO.TAKEOFF, which is denied to a vehicle on a payload", ge=0.0, le=80.0
     )
 
 

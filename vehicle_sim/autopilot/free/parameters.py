@@ -27,7 +27,6 @@ def free_parameters(airframe: Airframe) -> list[Parameter]:
         Parameter(SINK_MAX, 1.5, limits=(0.5, 4.0)),
         Parameter(TAKEOFF_SPEED, 1.5, limits=(0.1, 5.0)),
         Parameter(px4.PARAM_LAND_SPEED, 0.7, limits=(0.1, 5.0)),
-        Parameter(px4.PARAM_TAKEOFF_ALTITUDE, 2.5, limits=(0.0, 80.0)),
         Parameter(ACCEPTANCE_RADIUS, 2.0, limits=(0.05, 200.0)),
         Parameter(RETURN_ALTITUDE, 30.0, limits=(0.0, 150.0)),
         Parameter(DESCEND_ALTITUDE, 10.0, limits=(0.0, 100.0)),
