@@ -222,3 +222,40 @@ def test_no_payload_unit_is_forwarded():
         bench.run(3.0)
         assert bench.messages
         assert {message.get_srcSystem() for _, _, message in bench.messages} == {1}
+
+
+def test_landed_state_follows_the_flight():
+    with FreeBench() as bench:
+        seen = []
+
+        def look():
+            state = bench.vehicles[0].autopilot.landed_state
+            if seen[-1:] != [state]:
+                seen.append(state)
+            return False
+
+        bench.run(0.5, look)
+        bench.command(ARM, 1)
+        bench.command(*mode(px4.AutoMode.TAKEOFF))
+        bench.run(5.0, look)
+        bench.command(mavlink.MAV_CMD_NAV_LAND)
+        bench.run(8.0, look)
+        assert seen == [
+            mavlink.MAV_LANDED_STATE_ON_GROUND,
+            mavlink.MAV_LANDED_STATE_TAKEOFF,
+            mavlink.MAV_LANDED_STATE_IN_AIR,
+            mavlink.MAV_LANDED_STATE_LANDING,
+            mavlink.MAV_LANDED_STATE_ON_GROUND,
+        ]
+
+
+def test_take_off_to_less_than_its_height_does_not_sink():
+    with FreeBench() as bench:
+        bench.take_off(6.0)
+        bench.run(3.0)
+        assert bench.vehicles[0].aircraft.take_off(DEFAULT_HOME.altitude + 2.0, bench.now).result == ACCEPTED
+        bench.run(4.0)
+        assert bench.position()[2] == pytest.approx(-6.0, abs=0.2)
+        assert bench.command(*mode(px4.AutoMode.TAKEOFF)) == ACCEPTED
+        bench.run(3.0)
+        assert bench.mode_of() == "AUTO.LOITER"
