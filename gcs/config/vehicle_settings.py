@@ -127,6 +127,18 @@ class StreamIntervals(SettingsTable):
     battery_status: float = 2.0  # s; BATTERY_STATUS
     vfr_hud: float = 0.5  # s; VFR_HUD
     vibration: float = 10.0  # s; VIBRATION of the autopilot and of the payload unit
+    system_time: float = 1.0  # s; SYSTEM_TIME
+    current_mode: float = 2.0  # s; CURRENT_MODE
+    altitude: float = 1.0  # s; ALTITUDE
+    highres_imu: float = 1.0  # s; HIGHRES_IMU
+    scaled_pressure: float = 1.0  # s; SCALED_PRESSURE
+    estimator_status: float = 1.0  # s; ESTIMATOR_STATUS
+    rc_channels: float = 1.0  # s; RC_CHANNELS
+    position_target_local_ned: float = 1.0  # s; POSITION_TARGET_LOCAL_NED
+    nav_controller_output: float = 1.0  # s; NAV_CONTROLLER_OUTPUT
+    odometry: float = 1.0  # s; ODOMETRY
+    servo_output_raw: float = 1.0  # s; SERVO_OUTPUT_RAW
+    actuator_output_status: float = 1.0  # s; ACTUATOR_OUTPUT_STATUS
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -81,6 +81,34 @@ MODE_MISSION = encode_custom_mode(MainMode.AUTO, AutoMode.MISSION)
 MODE_RETURN = encode_custom_mode(MainMode.AUTO, AutoMode.RTL)
 MODE_LAND = encode_custom_mode(MainMode.AUTO, AutoMode.LAND)
 
+#: Modes that are one of MAVLink's standard modes, as of a multicopter.
+STANDARD_MODES: dict[int, int] = {
+    MODE_POSCTL: mavlink.MAV_STANDARD_MODE_POSITION_HOLD,
+    MODE_ALTCTL: mavlink.MAV_STANDARD_MODE_ALTITUDE_HOLD,
+    MODE_RETURN: mavlink.MAV_STANDARD_MODE_SAFE_RECOVERY,
+    MODE_MISSION: mavlink.MAV_STANDARD_MODE_MISSION,
+    MODE_LAND: mavlink.MAV_STANDARD_MODE_LAND,
+    MODE_TAKEOFF: mavlink.MAV_STANDARD_MODE_TAKEOFF,
+}
+
+#: The names that PX4 shows users in AVAILABLE_MODES.
+MODE_LABELS: dict[int, str] = {
+    MODE_MANUAL: "Manual",
+    MODE_ALTCTL: "Altitude",
+    MODE_POSCTL: "Position",
+    MODE_OFFBOARD: "Offboard",
+    MODE_TAKEOFF: "Takeoff",
+    MODE_HOLD: "Hold",
+    MODE_MISSION: "Mission",
+    MODE_RETURN: "Return",
+    MODE_LAND: "Land",
+}
+
+
+def standard_mode(custom_mode: int) -> int:
+    """Return the MAV_STANDARD_MODE of a custom mode; 0 (non-standard) if it is none."""
+    return STANDARD_MODES.get(custom_mode, mavlink.MAV_STANDARD_MODE_NON_STANDARD)
+
 
 @lru_cache(maxsize=64)
 def mode_name(custom_mode: int) -> str:

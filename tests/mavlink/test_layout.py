@@ -11,8 +11,9 @@ import pytest
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.layout import LAYOUTS
 from gcs.mavlink.messages import BROADCAST, Message
+from gcs.mavlink.newer_messages import NEWER
 
-KINDS = list(mavlink.mavlink_map.values())
+KINDS = [*mavlink.mavlink_map.values(), *NEWER.values()]
 SYSTEM, COMPONENT, SAMPLES = 7, 25, 12
 _FLOATS = (0.0, -0.0, 1.0, -1.5, math.nan, math.inf, -math.inf, 3.4028234e38, 1e-45)
 
@@ -45,8 +46,8 @@ def fields_of(message: Message) -> dict[str, str]:
     return {name: repr(list(v) if isinstance(v, list | tuple) else v) for name, v in values.items()}
 
 
-def test_all_kinds_of_the_dialect_have_a_layout() -> None:
-    assert len(KINDS) > 250
+def test_all_kinds_of_the_dialect_and_newer_ones_have_a_layout() -> None:
+    assert len(KINDS) > 250 and all(number not in mavlink.mavlink_map for number in NEWER)
     assert [layout.kind for layout in LAYOUTS.values()] == KINDS
 
 

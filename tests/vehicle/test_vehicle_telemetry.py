@@ -24,6 +24,11 @@ from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement
 
 NO_POINTS = np.empty((0, 3))
+SLOW = (
+    "SYSTEM_TIME", "ALTITUDE", "HIGHRES_IMU", "SCALED_PRESSURE", "ESTIMATOR_STATUS", "RC_CHANNELS",
+    "NAV_CONTROLLER_OUTPUT", "ODOMETRY", "SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS",
+)  # fmt: skip
+"""Streams of one second."""
 
 
 def test_ports_of_clients_get_all_streams_from_the_start_and_for_ever_without_an_answer() -> None:
@@ -34,7 +39,7 @@ def test_ports_of_clients_get_all_streams_from_the_start_and_for_ever_without_an
     needed = {
         "HEARTBEAT", "SYS_STATUS", "EXTENDED_SYS_STATE", "ATTITUDE", "ATTITUDE_QUATERNION", "LOCAL_POSITION_NED",
         "GLOBAL_POSITION_INT", "GPS_RAW_INT", "HOME_POSITION", "BATTERY_STATUS", "VFR_HUD", "ATTITUDE_TARGET",
-        "VIBRATION",
+        "VIBRATION", *SLOW, "CURRENT_MODE",
     }  # fmt: skip
     for address in (GROUND, STRANGER):
         assert {m.get_type() for m in bench.inbox[address] if m.get_srcSystem() == 1} == needed
@@ -74,7 +79,7 @@ def test_streams_have_their_rates_and_stamps_of_samples(bench: Bench) -> None:
     expected = {
         "ATTITUDE_QUATERNION": 200, "LOCAL_POSITION_NED": 200, "ATTITUDE": 40, "ATTITUDE_TARGET": 200,
         "GLOBAL_POSITION_INT": 20, "EXTENDED_SYS_STATE": 20, "VFR_HUD": 8, "HEARTBEAT": 4, "SYS_STATUS": 4,
-        "GPS_RAW_INT": 4, "HOME_POSITION": 2, "BATTERY_STATUS": 2,
+        "GPS_RAW_INT": 4, "HOME_POSITION": 2, "BATTERY_STATUS": 2, "CURRENT_MODE": 2, **dict.fromkeys(SLOW, 4),
     }  # fmt: skip
     assert counts == expected
     stamps = [m.time_boot_ms for m in bench.got("ATTITUDE_QUATERNION")]

@@ -7,7 +7,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 from gcs.config.flight_settings import FailsafeSettings
 from gcs.config.vehicle_settings import AutopilotSettings, HoldSettings, VehicleFailsafeSettings
 from gcs.mavlink import px4
-from gcs.mavlink.services.parameters import INTEGER, REAL, Parameter, ParameterTable
+from gcs.mavlink.services.parameter_table import INTEGER, REAL, Parameter, ParameterTable
 from idc_controller.settings import METADATA_KEY, Setting
 from vehicle_sim.autopilot.airframe import Airframe
 

@@ -15,6 +15,15 @@ class CoupledAircraft:
         self._autopilot = autopilot
         self._owner = owner
 
+    modes = (px4.MODE_HOLD, px4.MODE_LAND, px4.MODE_OFFBOARD, px4.MODE_POSCTL, px4.MODE_ALTCTL, px4.MODE_MANUAL)
+    """Those of sticks on the ground only."""
+    obeys_broadcasts = False
+    """One that missed the command would be left behind by the others."""
+
+    def arming_problem(self, now: float) -> str | None:
+        """See :meth:`.Autopilot.arming_problem`."""
+        return self._autopilot.arming_problem(now)
+
     def arm(self, now: float, force: bool = False) -> Answer:
         """See :meth:`.Autopilot.arm`."""
         return self._autopilot.arm(now, force)

@@ -7,12 +7,13 @@ from types import MappingProxyType
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.config.vehicle_settings import AutopilotSettings, VehicleLinkSettings
-from gcs.mavlink import px4
+from gcs.mavlink import newer_messages, px4
 from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.messages import BROADCAST
 from gcs.mavlink.services.commands import CommandServer
 from gcs.mavlink.services.dispatcher import Dispatcher, Request
+from gcs.mavlink.services.files import FileServices
 from gcs.mavlink.services.link import LinkServices
 from gcs.mavlink.services.other_components import OtherComponents
 from gcs.mavlink.services.parameters import ParameterServer
@@ -27,7 +28,7 @@ from vehicle_sim.autopilot.vehicle_parameters import vehicle_parameters
 from vehicle_sim.mavlink.aircraft import CoupledAircraft
 from vehicle_sim.mavlink.control_owner import ControlOwner
 from vehicle_sim.mavlink.setpoint_server import SetpointServer
-from vehicle_sim.mavlink.streams import default_intervals
+from vehicle_sim.mavlink.streams import OFFSETS, default_intervals
 from vehicle_sim.mavlink.telemetry import Telemetry
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
@@ -77,7 +78,12 @@ class Vehicle:
         """System and component of all that it sends."""
         self._peers = Peers(
             lambda address, with_payload: Peer(
-                address, self._own, intervals, link, silent=None if with_payload else px4.PAYLOAD_UNIT_COMPONENT
+                address,
+                self._own,
+                intervals,
+                link,
+                silent=None if with_payload else px4.PAYLOAD_UNIT_COMPONENT,
+                offsets=OFFSETS,
             ),
             clients,
             link,
@@ -95,9 +101,10 @@ class Vehicle:
             for component in (px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT)
         )
         aircraft = CoupledAircraft(self.autopilot, owner)
-        CommandServer(aircraft, owner, self.telemetry, streams).register(self._dispatcher)
+        CommandServer(aircraft, owner, self.telemetry, streams, self.parameters).register(self._dispatcher)
         self._other_components = OtherComponents(own, payload_unit, of_payload_unit)
         ParameterServer(self.parameters, owner).register(self._dispatcher)
+        FileServices().register(self._dispatcher)
 
     @property
     def refused_setpoints(self) -> int:
@@ -179,6 +186,8 @@ class Vehicle:
     def send_changes(self) -> None:
         """Send the HEARTBEAT anew, and what is to be said to the operator."""
         self._sent_changes = self.autopilot.changes
-        self._peers.repeat(mavlink.MAVLINK_MSG_ID_HEARTBEAT, mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE)
+        self._peers.repeat(
+            mavlink.MAVLINK_MSG_ID_HEARTBEAT, mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE, newer_messages.CURRENT_MODE
+        )
         for text in self.autopilot.take_notices():
             self._peers.send_statustext(text)
