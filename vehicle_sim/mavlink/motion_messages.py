@@ -4,6 +4,7 @@ import math
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.mavlink import px4
 from gcs.mavlink.layout import LAYOUTS, packed
 from gcs.mavlink.services.aircraft import Built
 from idc_controller.rotations_float import euler_of, into_body
@@ -64,9 +65,24 @@ def position_of(report: Report, measured: Measurement | None) -> Built:
 
 
 def vibration(report: Report, now: float, component: int) -> Built:
-    """No vibration is simulated; impacts are, by how often they drove the accelerometer out of its range."""
+    """The clipping of a component's accelerometer."""
     clipping = report.clipping[component]
     return packed(mavlink.MAVLink_vibration_message(report.time_boot_us(now), 0.0, 0.0, 0.0, clipping, 0, 0))
+
+
+def attitude_quaternion(report: Report, now: float) -> Built:
+    """Attitude as a quaternion, and body rates."""
+    return attitude_of(report, report.own_attitude)
+
+
+def local_position(report: Report, now: float) -> Built:
+    """Position from home and velocity, north-east-down."""
+    return position_of(report, report.own_position)
+
+
+def own_vibration(report: Report, now: float) -> Built:
+    """How often an impact drove the accelerometer out of its range; no vibration is simulated."""
+    return vibration(report, now, px4.AUTOPILOT_COMPONENT)
 
 
 def attitude(report: Report, now: float) -> Built:
@@ -92,7 +108,7 @@ def global_position(report: Report, now: float) -> Built:
 
 
 def gps_raw(report: Report, now: float) -> Built:
-    """The same place as a receiver of satellites would tell it."""
+    """Place, speed and course as a satellite receiver tells them."""
     measured = report.own_state
     if measured is None:
         return ()
@@ -146,7 +162,7 @@ def altitude(report: Report, now: float) -> Built:
 
 
 def highres_imu(report: Report, now: float) -> Built:
-    """Body rates, and pressure by the standard atmosphere; specific force and magnetic field are not measured (NaN)."""
+    """Body rates, and pressure by the standard atmosphere; nothing else is measured (NaN)."""
     measured = report.own_state
     if measured is None:
         return ()
@@ -171,7 +187,7 @@ def scaled_pressure(report: Report, now: float) -> Built:
 
 
 def estimator_status(report: Report, now: float) -> Built:
-    """What the vehicle's estimate holds: everything while samples come, otherwise nothing; no test ratios."""
+    """What the estimate holds: everything while samples come, otherwise nothing; no test ratios."""
     flags = _ESTIMATED if report.autopilot.state.navigation.is_valid(now) else 0
     return packed(mavlink.MAVLink_estimator_status_message(report.time_boot_us(now), flags, *[_NAN] * 8))
 
@@ -188,6 +204,8 @@ def _air_at(above_sea: float) -> tuple[float, float]:
 
 
 MESSAGES = {
+    mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: attitude_quaternion,
+    mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED: local_position,
     mavlink.MAVLINK_MSG_ID_ATTITUDE: attitude,
     mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: global_position,
     mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: gps_raw,
@@ -197,5 +215,6 @@ MESSAGES = {
     mavlink.MAVLINK_MSG_ID_HIGHRES_IMU: highres_imu,
     mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE: scaled_pressure,
     mavlink.MAVLINK_MSG_ID_ESTIMATOR_STATUS: estimator_status,
+    mavlink.MAVLINK_MSG_ID_VIBRATION: own_vibration,
 }
 """Builders by message id."""

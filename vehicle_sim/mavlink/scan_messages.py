@@ -24,11 +24,11 @@ class ScanMessages:
         """The scan that was built last, its returns, and its end."""
 
     def returns(self, now: float) -> Built:
-        """The returns of the last scan."""
+        """The returns of the last scan, one a message."""
         return self._latest()[1]
 
     def end(self, now: float) -> Built:
-        """The message behind the returns of the last scan, which says that there was one even if nothing returned."""
+        """The nearest return of each sector; it ends a scan, also one without returns."""
         return self._latest()[2]
 
     def _latest(self) -> tuple[RangeSample | None, Built, Built]:

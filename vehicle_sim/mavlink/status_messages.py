@@ -104,7 +104,7 @@ def available_modes_monitor(report: Report, now: float) -> Built:
 
 
 def system_time(report: Report, now: float) -> Built:
-    """Time since boot; that of the day is not known (0) in a simulated world."""
+    """Time since boot; a simulated world has no time of day (0)."""
     return packed(mavlink.MAVLink_system_time_message(0, report.time_boot_ms(now)))
 
 
@@ -137,7 +137,7 @@ def rc_channels(report: Report, now: float) -> Built:
 
 
 def autopilot_version(report: Report, now: float) -> Built:
-    """Capabilities and the package's version; as of PX4's simulation, there are neither a board nor a vendor."""
+    """Capabilities and the package's version; there is no board and no vendor, as in PX4's simulation."""
     uid2 = list(_MAKER + bytes([report.system_id]))
     none = [0] * 8
     return packed(

@@ -10,8 +10,8 @@ from gcs.mavlink.services.aircraft import MessageKey
 
 _AUTOPILOT, _PAYLOAD = px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT
 
-#: Offsets (s) of streams from the multiples of their intervals: between scans of the range sensor, so that what is due
-#: at one instant stays within a datagram.
+#: Offsets (s) of streams from the multiples of their intervals: with other telemetry, but between scans of the range
+#: sensor, so that what is due at one instant stays within a datagram.
 OFFSETS: dict[MessageKey, float] = {
     **dict.fromkeys(
         [
@@ -33,7 +33,7 @@ OFFSETS: dict[MessageKey, float] = {
             (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW),
             (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_ACTUATOR_OUTPUT_STATUS),
         ],
-        0.06,
+        0.08,
     ),
 }
 

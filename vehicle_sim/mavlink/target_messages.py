@@ -21,7 +21,7 @@ _OUTPUTS = 32  # of ACTUATOR_OUTPUT_STATUS
 
 
 def attitude_target(report: Report, now: float) -> Built:
-    """Stamped with the moment at which it began to act, as PX4 does it."""
+    """Attitude, rates and thrust that are flown, stamped with the moment at which they began to act, as by PX4."""
     actuation = report.autopilot.state.actuation
     attitude, rates, thrust = actuation.target
     since = max(actuation.target_since, report.boot_time)
@@ -45,7 +45,7 @@ def position_target(report: Report, now: float) -> Built:
 
 
 def nav_controller_output(report: Report, now: float) -> Built:
-    """Angles that are flown to, and distance and bearing of the place where it is to hold, if it is to."""
+    """The attitude that is flown, and distance and bearing of the place where it comes to hold."""
     measured = report.own_state
     if measured is None:
         return ()
@@ -66,7 +66,7 @@ def nav_controller_output(report: Report, now: float) -> Built:
 
 
 def servo_output_raw(report: Report, now: float) -> Built:
-    """The commanded rotor speeds as pulse widths: 1000 us stands still, 2000 us is the largest speed."""
+    """The commanded rotor speeds as pulse widths: 1000 us is none, 2000 us the largest."""
     pulses = [round(_PULSE_MIN + _PULSE_RANGE * share) for share in _speed_shares(report)]
     return packed(mavlink.MAVLink_servo_output_raw_message(report.time_boot_us(now) & 0xFFFFFFFF, 0, *pulses, *[0] * 4))
 

@@ -31,9 +31,6 @@ class Telemetry(Report):
         tables = status_messages.MESSAGES | motion_messages.MESSAGES | target_messages.MESSAGES
         own: dict[int, Callable[[float], Built]] = {
             **{number: partial(build, self) for number, build in tables.items()},
-            mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: lambda now: attitude_of(self, self.own_attitude),
-            mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED: lambda now: position_of(self, self.own_position),
-            mavlink.MAVLINK_MSG_ID_VIBRATION: lambda now: vibration(self, now, _OWN),
             mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D: scan.returns,
             mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE: scan.end,
         }

@@ -1,6 +1,6 @@
 """MAVLink commands to an aircraft: who may send them, that each is done once, and the answer."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
@@ -46,7 +46,7 @@ class _Done(NamedTuple):
 
 
 class CommandServer:
-    """COMMAND_LONG, COMMAND_INT, COMMAND_CANCEL and SET_MODE."""
+    """COMMAND_LONG, COMMAND_INT, COMMAND_CANCEL and SET_MODE; ``handlers`` by MAV_CMD, others are unsupported."""
 
     def __init__(
         self,
@@ -60,18 +60,13 @@ class CommandServer:
         self._control = control
         self._modes = ModeCommands(aircraft, control)
         streams.answer_with(self._modes.REQUESTED, self._modes.send_available)
-        self._commands: dict[int, Callable[[Command, Request], Answer]] = {
+        self.handlers: Mapping[int, Callable[[Command, Request], Answer]] = {
             **FlightCommands(aircraft, source).handlers,
             **self._modes.handlers,
             **SystemCommands(aircraft, parameters, streams).handlers,
             **streams.handlers,
         }
         self._done: dict[tuple[Sender, int], _Done] = {}
-
-    @property
-    def served(self) -> frozenset[int]:
-        """The commands that are not UNSUPPORTED."""
-        return frozenset(self._commands)
 
     def register(self, dispatcher: Dispatcher) -> None:
         """Take the messages of this service."""
@@ -94,7 +89,7 @@ class CommandServer:
         self._acknowledge(message.command, answer, request)
 
     def _answer(self, message: Command, request: Request, is_information: bool) -> Answer:
-        run = self._commands.get(message.command)
+        run = self.handlers.get(message.command)
         if is_information and run is not None:
             return run(message, request)
         if self._control.is_stranger(request.sender, request.now):

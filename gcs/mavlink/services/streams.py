@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.mavlink.layout import LAYOUTS
 from gcs.mavlink.services.aircraft import Control, MessageSource
 from gcs.mavlink.services.answer import ACCEPTED, UNSUPPORTED, Answer, denied, rejected_for_now
 from gcs.mavlink.services.dispatcher import Command, Request
@@ -36,7 +37,7 @@ class StreamRequests:
 
     def sending(self, message_id: int) -> Callable[[Command, Request], Answer]:
         """Return what answers an older command that requests one message."""
-        name = mavlink.mavlink_map[message_id].msgname if message_id in mavlink.mavlink_map else str(message_id)
+        name = LAYOUTS[message_id].kind.msgname
 
         def send(message: Command, request: Request) -> Answer:
             return self._send(message_id, request)
