@@ -90,6 +90,11 @@ def test_prearm_checks_say_what_is_wrong() -> None:
     assert bench.ask(command(401)) == (ACCEPTED, "Preflight OK", [])
     bench.aircraft.problem = "the vehicle moves"
     assert bench.ask(command(401)) == (ACCEPTED, "Preflight Fail: the vehicle moves", [])
+    severities = []
+    for problem in (None, "the vehicle moves"):
+        bench.aircraft.problem = problem
+        severities += [m.severity for m in bench.request(command(401)) if m.get_type() == "STATUSTEXT"]
+    assert severities == [mavlink.MAV_SEVERITY_INFO, mavlink.MAV_SEVERITY_WARNING]
 
 
 def test_parameters_are_saved_restored_and_reset_on_request() -> None:

@@ -219,6 +219,33 @@ def test_action_of_a_lost_ground_is_the_one_that_was_set(flying: Bench, action: 
     assert (flying.vehicle.autopilot.mode == px4.MODE_LAND) is descends
 
 
+@pytest.mark.parametrize(
+    ("message", "kind"),
+    [
+        (mavlink.MAVLink_file_transfer_protocol_message(0, 1, 1, [0, 0, 0, 4, *[0] * 247]), "FILE_TRANSFER_PROTOCOL"),
+        (mavlink.MAVLink_log_request_list_message(1, 1, 0, 0xFFFF), "LOG_ENTRY"),
+        (mavlink.MAVLink_param_request_read_message(1, 1, b"NO_SUCH", -1), "PARAM_ERROR"),
+        (mavlink.MAVLink_timesync_message(0, 5), "TIMESYNC"),
+        (mavlink.MAVLink_ping_message(1, 2, 0, 0), "PING"),
+        (mavlink.MAVLink_set_mode_message(1, 0, 4), "STATUSTEXT"),
+        (command(510, mavlink.MAVLINK_MSG_ID_ATTITUDE), "MESSAGE_INTERVAL"),
+        (command(519, 1), "PROTOCOL_VERSION"),
+        (command(410), "HOME_POSITION"),
+        (command(401), "STATUSTEXT"),
+    ],
+)
+def test_request_is_answered_at_once(bench: Bench, message: Any, kind: str) -> None:
+    assert kind in [m.get_type() for m in bench.request(message)]
+
+
+def test_old_protocols_of_fence_and_rally_points_are_ignored(bench: Bench) -> None:
+    for message in (
+        mavlink.MAVLink_fence_fetch_point_message(1, 1, 0),
+        mavlink.MAVLink_rally_fetch_point_message(1, 1, 0),
+    ):
+        assert bench.request(message) == []
+
+
 def test_request_to_an_absent_component_is_answered(bench: Bench) -> None:
     for component in (100, 154, 25):
         assert bench.result(command(512, 259, component=component)) == mavlink.MAV_RESULT_UNSUPPORTED

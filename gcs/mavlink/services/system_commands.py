@@ -35,7 +35,10 @@ class SystemCommands:
     def _run_prearm_checks(self, message: Command, request: Request) -> Answer:
         """Run the prearm checks, and say by STATUSTEXT what is wrong."""
         problem = self._aircraft.arming_problem(request.now)
-        request.peer.send_statustext("Preflight OK" if problem is None else f"Preflight Fail: {problem}")
+        if problem is None:
+            request.peer.send_statustext("Preflight OK", mavlink.MAV_SEVERITY_INFO)
+        else:
+            request.peer.send_statustext(f"Preflight Fail: {problem}")
         return ACCEPTED
 
     def _storage(self, message: Command, request: Request) -> Answer:
