@@ -46,6 +46,7 @@ _PRESSURE = 1013.25  # hPa
 _TEMPERATURE = 288.15  # K
 _LAPSE = 0.0065  # K/m
 _EXPONENT = 5.25588
+_LOWEST = -5000.0  # m
 _ZERO_CELSIUS = 273.15  # K
 
 
@@ -199,7 +200,7 @@ def _altitude_of(report: Report, measured: Measurement) -> float:
 
 def _air_at(above_sea: float) -> tuple[float, float]:
     """Return pressure (hPa) and temperature (K) of the standard atmosphere at an altitude (m)."""
-    share = max(1.0 - _LAPSE * above_sea / _TEMPERATURE, 0.0)
+    share = max(1.0 - _LAPSE * max(above_sea, _LOWEST) / _TEMPERATURE, 0.0)
     return _PRESSURE * share**_EXPONENT, _TEMPERATURE * share
 
 

@@ -87,7 +87,7 @@ def _speed_shares(report: Report) -> list[float]:
     """Return the commanded rotor speeds as shares of the largest, 0 .. 1, in the order of PX4's X layout."""
     speed_max = report.autopilot.state.airframe.rotors.rotor_speed_max
     speeds = report.autopilot.arrays.speeds[0].tolist() if report.autopilot.armed else [0.0] * _ROTORS
-    return [min(max(speed / speed_max, 0.0), 1.0) for speed in speeds]
+    return [min(speed / speed_max, 1.0) if speed > 0.0 else 0.0 for speed in speeds]  # of NaN, too
 
 
 MESSAGES = {
