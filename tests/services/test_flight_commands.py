@@ -80,7 +80,8 @@ def test_place_in_another_frame_is_refused_as_such(number: int, frame: int) -> N
 @pytest.mark.parametrize(
     ("message", "parameter"),
     [
-        (command(400, 2), 1), (command(400, NAN), 1), (command(178, 2, 3.0), 1), (command(178, 1, 0.0), 2),
+        (command(400, 2), 1), (command(400, NAN), 1), (command(185, NAN), 1), (command(185, 2), 1),
+        (command(178, 2, 3.0), 1), (command(178, 1, 0.0), 2),
         (command(178, 1, -2.0), 2), (command(178, 1, math.inf), 2), (command(178, 1, NAN), 2), (command(193, 2), 1),
         (command(300, -1), 1), (command(300, 1.5), 1), (command(192, 0, 0, 0, 0, 91.0, 0.0, 0.0), 5),
         (command(192, 0, 0, 0, 0, 0.0, -181.0, 0.0), 6), (command(192, 0, 0, 0, 0, 0, 0, math.inf), 7),

@@ -63,7 +63,9 @@ class FlightCommands:
 
     def _terminate(self, message: Command, request: Request) -> Answer:
         """Stop the rotors at once, in the air, too (param1 1); 0 does nothing."""
-        return self._aircraft.disarm(request.now, True) if message.param1 >= 0.5 else ACCEPTED
+        if message.param1 == 1.0:
+            return self._aircraft.disarm(request.now, True)
+        return ACCEPTED if message.param1 == 0.0 else denied(f"Termination denied: param1 {message.param1:g}", 1)
 
     def _take_off(self, message: Command, request: Request) -> Answer:
         """Take off to an altitude (NaN: MIS_TAKEOFF_ALT above the ground)."""
