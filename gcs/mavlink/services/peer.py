@@ -52,8 +52,8 @@ class Stream:
         """
         passed = math.floor((now + TIME_TOLERANCE - self._offset) / self.interval)
         self.due = (passed + 1) * self.interval + self._offset
-        if self._waits and not self.repeats:
-            self._waits = False
+        waits, self._waits = self._waits, False
+        if waits and not self.repeats:
             return ()
         if self.repeats:
             self.repeats -= 1
