@@ -238,6 +238,18 @@ def test_request_is_answered_at_once(bench: Bench, message: Any, kind: str) -> N
     assert kind in [m.get_type() for m in bench.request(message)]
 
 
+def test_inputs_that_are_not_flown_are_answered_with_the_reason(bench: Bench) -> None:
+    position = mavlink.MAVLink_set_position_target_local_ned_message(0, 1, 1, 1, 0xFF8, 1, 2, -3, *[0] * 8)
+    place = mavlink.MAVLink_set_position_target_global_int_message(0, 1, 1, 6, 0xFF8, 1, 2, -3, *[0] * 8)
+    for message, words in (
+        (position, "SET_ATTITUDE_TARGET"),
+        (mavlink.MAVLink_manual_control_message(1, 0, 0, 0, 0, 0), "sticks"),
+    ):
+        assert words in "".join(m.text for m in bench.request(message))
+        assert bench.request(message) == []
+    assert bench.request(place) == []  # the same reason was given a moment ago
+
+
 def test_old_protocols_of_fence_and_rally_points_are_ignored(bench: Bench) -> None:
     for message in (
         mavlink.MAVLink_fence_fetch_point_message(1, 1, 0),

@@ -20,12 +20,13 @@ from gcs.mavlink.services.parameters import ParameterServer
 from gcs.mavlink.services.peer import Peer
 from gcs.mavlink.services.peers import Peers
 from gcs.mavlink.services.streams import StreamRequests
+from gcs.mavlink.services.unserved_inputs import STICKS, UnservedInputs
 from gcs.mission.model import DEFAULT_HOME, Home
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.autopilot.vehicle_parameters import vehicle_parameters
-from vehicle_sim.mavlink.aircraft import CoupledAircraft
+from vehicle_sim.mavlink.aircraft import TEAM_SETPOINTS, CoupledAircraft
 from vehicle_sim.mavlink.control_owner import ControlOwner
 from vehicle_sim.mavlink.setpoint_server import SetpointServer
 from vehicle_sim.mavlink.streams import OFFSETS, default_intervals
@@ -106,6 +107,7 @@ class Vehicle:
         self._other_components = OtherComponents(own, payload_unit, of_payload_unit)
         ParameterServer(self.parameters, owner).register(self._dispatcher)
         FileServices().register(self._dispatcher)
+        UnservedInputs(system_id, {**STICKS, **TEAM_SETPOINTS}).register(self._dispatcher)
 
     @property
     def refused_setpoints(self) -> int:
