@@ -9,9 +9,7 @@ import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as wide
 import pymavlink.dialects.v20.common as mavlink
 import pytest
-from vehicle_bench import (
-    Bench,
-)
+from vehicle_bench import STRANGER, Bench
 
 from gcs.config.vehicle_settings import VehicleFailsafeSettings
 from gcs.mavlink import px4
@@ -65,6 +63,14 @@ def test_parameters_are_set_or_the_kept_value_is_answered(
     errors = [m for m in answers if m.get_type() == "PARAM_ERROR"]
     assert len(errors) == (bench.vehicle.parameters[name] != pytest.approx(value) if kind == 9 else stored != 20)
     assert bench.vehicle.parameters[name] == stored
+
+
+def test_value_that_was_set_is_told_to_all_peers_and_a_refusal_to_its_sender(bench: Bench) -> None:
+    bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3), STRANGER)
+    for value, told in ((0.3, 1), (-1.0, 1)):
+        bench.request(mavlink.MAVLink_param_set_message(1, 1, b"COM_OF_LOSS_T", value, 9))
+        assert len(bench.got("PARAM_VALUE", STRANGER)) == told
+    assert len(bench.got("PARAM_VALUE")) == 2 and not bench.got("PARAM_ERROR", STRANGER)
 
 
 def test_real_parameters_have_the_precision_of_the_wire_and_integers_are_exact() -> None:

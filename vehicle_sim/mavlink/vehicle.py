@@ -105,7 +105,7 @@ class Vehicle:
         self.commands = CommandServer(self.aircraft, owner, self.telemetry, streams, self.parameters)
         self.commands.register(self._dispatcher)
         self._other_components = OtherComponents(own, payload_unit, of_payload_unit)
-        ParameterServer(self.parameters, owner).register(self._dispatcher)
+        ParameterServer(self.parameters, owner, self._peers).register(self._dispatcher)
         FileServices().register(self._dispatcher)
         UnservedInputs(system_id, {**STICKS, **TEAM_SETPOINTS}).register(self._dispatcher)
 

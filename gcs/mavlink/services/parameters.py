@@ -1,15 +1,17 @@
 """The MAVLink parameter protocol, in PX4's byte-wise flavour."""
 
 import struct
+from collections.abc import Iterable
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
 from gcs.mavlink.layout import LAYOUTS
-from gcs.mavlink.messages import BROADCAST
+from gcs.mavlink.messages import BROADCAST, Message
 from gcs.mavlink.services.aircraft import Control
 from gcs.mavlink.services.dispatcher import Dispatcher, Request
-from gcs.mavlink.services.parameter_table import Parameter, ParameterRefusalError, ParameterTable
+from gcs.mavlink.services.parameter_table import ParameterRefusalError, ParameterTable
+from gcs.mavlink.services.peer import Peer
 
 _VALUE = LAYOUTS[mavlink.MAVLINK_MSG_ID_PARAM_VALUE]
 _HASH = "_HASH_CHECK"
@@ -22,11 +24,14 @@ class ParameterServer:
     """PARAM_REQUEST_READ, PARAM_REQUEST_LIST and PARAM_SET.
 
     A refusal is a PARAM_ERROR; of a PARAM_SET the value that is kept follows, for grounds that do not know PARAM_ERROR.
+    A value that was set is told to all peers.
     """
 
-    def __init__(self, table: ParameterTable, control: Control) -> None:
+    def __init__(self, table: ParameterTable, control: Control, peers: Iterable[Peer] = ()) -> None:
+        """``peers``: all who are connected, whenever it is iterated."""
         self._table = table
         self._control = control
+        self._peers = peers
 
     def register(self, dispatcher: Dispatcher) -> None:
         """Take the messages of this service."""
@@ -43,12 +48,12 @@ class ParameterServer:
         if parameter is None:
             self._refuse(name, index, mavlink.MAV_PARAM_ERROR_DOES_NOT_EXIST, request)
         else:
-            self._send(parameter, request)
+            request.peer.reply(self._value(parameter.name))
 
     def _on_list(self, message: mavlink.MAVLink_param_request_list_message, request: Request) -> None:
         self._send_hash(request)
         for parameter in self._table:
-            self._send(parameter, request)
+            request.peer.reply(self._value(parameter.name))
 
     def _on_set(self, message: mavlink.MAVLink_param_set_message, request: Request) -> None:
         name = message.param_id
@@ -67,15 +72,20 @@ class ParameterServer:
         except ParameterRefusalError as error:
             request.peer.send_statustext(str(error))
             self._refuse(name, -1, error.number, request)
-        if (parameter := self._table.by_name(name)) is not None:
-            self._send(parameter, request)
+        else:
+            for peer in self._peers:
+                if peer is not request.peer:
+                    peer.reply(self._value(name))
+        if self._table.by_name(name) is not None:
+            request.peer.reply(self._value(name))
 
-    def _send(self, parameter: Parameter, request: Request) -> None:
+    def _value(self, name: str) -> Message:
+        """Return the PARAM_VALUE of an existing parameter."""
+        index, count = self._table.index_of(name), len(self._table)
+        parameter = self._table.by_index(index)
+        assert parameter is not None
         value = px4.parameter_to_wire(parameter.value, parameter.type)
-        count, index = len(self._table), self._table.index_of(parameter.name)
-        request.peer.reply(
-            mavlink.MAVLink_param_value_message(parameter.name.encode(), value, parameter.type, count, index)
-        )
+        return mavlink.MAVLink_param_value_message(name.encode(), value, parameter.type, count, index)
 
     def _send_hash(self, request: Request) -> None:
         layout, payload = _VALUE.pack(0.0, len(self._table), _NO_INDEX, _HASH.encode(), mavlink.MAV_PARAM_TYPE_UINT32)
