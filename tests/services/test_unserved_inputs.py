@@ -32,3 +32,11 @@ def test_input_is_answered_by_a_text_once_in_ten_seconds(bench: ServiceBench, me
 
 def test_sticks_of_another_vehicle_are_not_answered(bench: ServiceBench) -> None:
     assert bench.request(mavlink.MAVLink_manual_control_message(SYSTEM + 1, 0, 0, 500, 0, 0)) == []
+
+
+def test_input_that_a_service_takes_is_left_to_it() -> None:
+    bench, taken = ServiceBench(), []
+    bench.dispatcher.register(mavlink.MAVLink_manual_control_message, lambda message, request: taken.append(message.z))
+    UnservedInputs(SYSTEM, STICKS).register(bench.dispatcher)
+    assert bench.request(MANUAL) == [] and taken == [500]
+    assert bench.request(OVERRIDE) != []

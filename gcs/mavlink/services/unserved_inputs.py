@@ -32,9 +32,10 @@ class UnservedInputs:
         """When each text was sent to a peer last (s)."""
 
     def register(self, dispatcher: Dispatcher) -> None:
-        """Take the messages of which nothing is made."""
+        """Take the messages that no service has taken: to be called last."""
         for kind in self._texts:
-            dispatcher.register(kind, self._on_message)
+            if not dispatcher.serves(kind):
+                dispatcher.register(kind, self._on_message)
 
     def _on_message(self, message: Any, request: Request) -> None:
         # MANUAL_CONTROL names its addressee in a field of its own.
