@@ -166,7 +166,9 @@ def test_scans_are_refused_in_a_world_without_anything_to_range(bench: Bench) ->
         assert bench.result(command(512, number)) == REJECTED
 
 
-def test_stamps_never_go_back(bench: Bench) -> None:
+def test_stamps_never_go_back() -> None:
+    bench = Bench(clients={GROUND: True})
+    bench.run(0.1)
     bench.fly()
     bench.result(HOLD)
     bench.run(1.0)

@@ -12,7 +12,7 @@ from gcs.mavlink import px4
 from gcs.mavlink.layout import LAYOUTS
 from gcs.mavlink.services.parameter_table import REAL, Parameter
 from vehicle_sim.autopilot.airframe import Airframe
-from vehicle_sim.mavlink.streams import default_intervals
+from vehicle_sim.mavlink.streams import CLIENT_STREAMS, default_intervals
 from vehicle_sim.mavlink.vehicle import Vehicle
 
 
@@ -22,8 +22,8 @@ def services_page() -> str:
     vehicle = Vehicle(1, Airframe.of_system(config.true_parameters(), 0, config.uav), link=config.vehicle_link)
     intervals = default_intervals(config.vehicle_link.intervals, 1.0 / config.rates.telemetry)
     messages = "\n".join(
-        f"| {number} | {LAYOUTS[number].kind.msgname} | {_interval(intervals.get((component, number)))} "
-        f"| {_meaning(build)} |"
+        f"| {number} | {LAYOUTS[number].kind.msgname} | {_interval(intervals.get((component, number)))}"
+        f"{' *' if (component, number) in CLIENT_STREAMS else ''} | {_meaning(build)} |"
         for (component, number), build in sorted(vehicle.telemetry.builders.items())
         if component == px4.AUTOPILOT_COMPONENT
     )
@@ -45,7 +45,8 @@ settings; how clients connect is in [clients.md](clients.md).
 
 Intervals are those of each link until its client sets others (MAV_CMD_SET_MESSAGE_INTERVAL, down to
 {config.vehicle_link.interval_min:g} s); every message comes once by MAV_CMD_REQUEST_MESSAGE. One of which there is no
-data now is refused for now; one that this world does not have is refused with the reason.
+data now is refused for now; one that this world does not have is refused with the reason. With an asterisk: streamed
+unasked to the ports of clients only (14540 and on, 14550), to those who call in on request.
 
 | id | message | interval | what |
 |---|---|---|---|

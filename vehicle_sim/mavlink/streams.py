@@ -37,6 +37,12 @@ OFFSETS: dict[MessageKey, float] = {
     ),
 }
 
+CLIENT_STREAMS: frozenset[MessageKey] = frozenset(OFFSETS) - {
+    (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_SYSTEM_TIME),
+    (_AUTOPILOT, newer_messages.CURRENT_MODE),
+}
+"""Streams that only the ports of clients get unasked: a ground that calls in may do so by a slow link."""
+
 
 def default_intervals(intervals: StreamIntervals, telemetry_interval: float) -> dict[MessageKey, float]:
     """Return the intervals (s) of all streams by component and message, in the order in which they are sent.

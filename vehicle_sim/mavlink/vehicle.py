@@ -29,7 +29,7 @@ from vehicle_sim.autopilot.vehicle_parameters import vehicle_parameters
 from vehicle_sim.mavlink.aircraft import TEAM_SETPOINTS, CoupledAircraft
 from vehicle_sim.mavlink.control_owner import ControlOwner
 from vehicle_sim.mavlink.setpoint_server import SetpointServer
-from vehicle_sim.mavlink.streams import OFFSETS, default_intervals
+from vehicle_sim.mavlink.streams import CLIENT_STREAMS, OFFSETS, default_intervals
 from vehicle_sim.mavlink.telemetry import Telemetry
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
@@ -66,6 +66,7 @@ class Vehicle:
         ``clock`` is what its clock shows at a time; ``arrays`` as in :class:`.Autopilot`.
         """
         intervals = default_intervals(link.intervals, 1.0 / telemetry_rate)
+        of_caller = {key: interval for key, interval in intervals.items() if key not in CLIENT_STREAMS}
         self.system_id = system_id
         self.parameters = vehicle_parameters(airframe, system_id, round(onboard_rate), autopilot)
         self.autopilot = Autopilot(airframe, self.parameters, autopilot, arrays)
@@ -81,7 +82,7 @@ class Vehicle:
             lambda address, with_payload: Peer(
                 address,
                 self._own,
-                intervals,
+                intervals if address in clients else of_caller,
                 link,
                 silent=None if with_payload else px4.PAYLOAD_UNIT_COMPONENT,
                 offsets=OFFSETS,
