@@ -164,6 +164,18 @@ class StreamIntervals(SettingsTable):
     vibration: float = 10.0  # s; VIBRATION of the autopilot and of the payload unit
     mission_current: float = 1.0  # s; MISSION_CURRENT
     mission_item_reached: float = 1.0  # s; MISSION_ITEM_REACHED, while it is repeated
+    system_time: float = 1.0  # s; SYSTEM_TIME
+    current_mode: float = 2.0  # s; CURRENT_MODE
+    altitude: float = 1.0  # s; ALTITUDE
+    highres_imu: float = 1.0  # s; HIGHRES_IMU
+    scaled_pressure: float = 1.0  # s; SCALED_PRESSURE
+    estimator_status: float = 1.0  # s; ESTIMATOR_STATUS
+    rc_channels: float = 1.0  # s; RC_CHANNELS
+    position_target_local_ned: float = 1.0  # s; POSITION_TARGET_LOCAL_NED
+    nav_controller_output: float = 1.0  # s; NAV_CONTROLLER_OUTPUT
+    odometry: float = 1.0  # s; ODOMETRY
+    servo_output_raw: float = 1.0  # s; SERVO_OUTPUT_RAW
+    actuator_output_status: float = 1.0  # s; ACTUATOR_OUTPUT_STATUS
 
 
 @dataclass(frozen=True, eq=False, repr=False)

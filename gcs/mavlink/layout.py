@@ -13,6 +13,8 @@ import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 from numpy.typing import NDArray
 
+from gcs.mavlink.newer_messages import NEWER
+
 Message = mavlink.MAVLink_message
 
 
@@ -71,7 +73,7 @@ class Layout:
             ]
         )
 
-    def pack(self, *values: float) -> Packed:
+    def pack(self, *values: float | bytes) -> Packed:
         """Return a message of these fields, in the order of the wire, arrays number by number.
 
         Raises ``struct.error`` or ``OverflowError`` when a field does not fit its type.
@@ -117,5 +119,5 @@ def _tuple_of(getter: Callable[..., Callable[[Any], Any]], keys: Sequence[Any]) 
     return get if len(keys) > 1 else lambda source: (get(source),)
 
 
-LAYOUTS: dict[int, Layout] = {number: Layout(kind) for number, kind in mavlink.mavlink_map.items()}
-"""Layouts of ArduPilot's dialect, which holds the common one, by message id."""
+LAYOUTS: dict[int, Layout] = {number: Layout(kind) for number, kind in (mavlink.mavlink_map | NEWER).items()}
+"""Layouts of ArduPilot's dialect, which holds the common one, and of newer common messages, by message id."""

@@ -31,9 +31,13 @@ PARAM_ONBOARD_RATE = "CLFT_LOOP_RATE"  #: Hz, integer, the onboard loop, read-on
 PARAM_LAND_DELAY = "CLFT_LAND_DELAY"  #: s from holding after a loss to descending
 PARAM_SETPOINT_LOSS = "COM_OF_LOSS_T"  #: s without set-points until the vehicle brakes
 PARAM_LINK_LOSS = "COM_DL_LOSS_T"  #: s, integer, without any ground until a holding vehicle descends
+PARAM_LINK_LOSS_ACTION = "NAV_DLL_ACT"  #: integer, LINK_LOSS_NOTHING or LINK_LOSS_LAND
 PARAM_LAND_SPEED = "MPC_LAND_SPEED"  #: m/s, the descent
 PARAM_TAKEOFF_ALTITUDE = "MIS_TAKEOFF_ALT"  #: m
 PARAM_SYSTEM_ID = "MAV_SYS_ID"  #: integer, read-only
+
+LINK_LOSS_NOTHING, LINK_LOSS_LAND = 0, 3
+"""Values of NAV_DLL_ACT."""
 
 
 class MainMode(IntEnum):
@@ -80,6 +84,34 @@ MODE_HOLD = encode_custom_mode(MainMode.AUTO, AutoMode.LOITER)
 MODE_MISSION = encode_custom_mode(MainMode.AUTO, AutoMode.MISSION)
 MODE_RETURN = encode_custom_mode(MainMode.AUTO, AutoMode.RTL)
 MODE_LAND = encode_custom_mode(MainMode.AUTO, AutoMode.LAND)
+
+#: Modes that are one of MAVLink's standard modes, as of a multicopter.
+STANDARD_MODES: dict[int, int] = {
+    MODE_POSCTL: mavlink.MAV_STANDARD_MODE_POSITION_HOLD,
+    MODE_ALTCTL: mavlink.MAV_STANDARD_MODE_ALTITUDE_HOLD,
+    MODE_RETURN: mavlink.MAV_STANDARD_MODE_SAFE_RECOVERY,
+    MODE_MISSION: mavlink.MAV_STANDARD_MODE_MISSION,
+    MODE_LAND: mavlink.MAV_STANDARD_MODE_LAND,
+    MODE_TAKEOFF: mavlink.MAV_STANDARD_MODE_TAKEOFF,
+}
+
+#: The names that PX4 shows users in AVAILABLE_MODES.
+MODE_LABELS: dict[int, str] = {
+    MODE_MANUAL: "Manual",
+    MODE_ALTCTL: "Altitude",
+    MODE_POSCTL: "Position",
+    MODE_OFFBOARD: "Offboard",
+    MODE_TAKEOFF: "Takeoff",
+    MODE_HOLD: "Hold",
+    MODE_MISSION: "Mission",
+    MODE_RETURN: "Return",
+    MODE_LAND: "Land",
+}
+
+
+def standard_mode(custom_mode: int) -> int:
+    """Return the MAV_STANDARD_MODE of a custom mode; 0 (non-standard) if it is none."""
+    return STANDARD_MODES.get(custom_mode, mavlink.MAV_STANDARD_MODE_NON_STANDARD)
 
 
 @lru_cache(maxsize=64)

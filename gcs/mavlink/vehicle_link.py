@@ -16,6 +16,7 @@ from gcs.mavlink.requests import Requests
 from gcs.mavlink.scan_sequence import RETURNS, SCAN_END
 from gcs.mavlink.setpoints import SetpointStream
 from gcs.mavlink.settings import LinkSettings
+from gcs.mavlink.status_text import TextChunks
 
 _ATTITUDE, _POSITION = mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED
 _NAVIGATION, _TIMESYNC = (_ATTITUDE, _POSITION), mavlink.MAVLINK_MSG_ID_TIMESYNC
@@ -29,6 +30,17 @@ _NOT_READ = frozenset(
         mavlink.MAVLINK_MSG_ID_ATTITUDE,
         mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT,
         mavlink.MAVLINK_MSG_ID_VFR_HUD,
+        mavlink.MAVLINK_MSG_ID_ODOMETRY,
+        mavlink.MAVLINK_MSG_ID_ALTITUDE,
+        mavlink.MAVLINK_MSG_ID_HIGHRES_IMU,
+        mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE,
+        mavlink.MAVLINK_MSG_ID_ESTIMATOR_STATUS,
+        mavlink.MAVLINK_MSG_ID_SYSTEM_TIME,
+        mavlink.MAVLINK_MSG_ID_RC_CHANNELS,
+        mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT,
+        mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED,
+        mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW,
+        mavlink.MAVLINK_MSG_ID_ACTUATOR_OUTPUT_STATUS,
     )
 )
 
@@ -53,6 +65,7 @@ class VehicleStatus:
     """Health of its range sensor, from SYS_STATUS."""
     parameters: dict[str, float] = field(default_factory=dict)
     texts: deque[str] = field(default_factory=lambda: deque(maxlen=20))
+    _chunks: TextChunks = field(default_factory=TextChunks)
 
     @property
     def last_text(self) -> str:
@@ -78,7 +91,9 @@ class VehicleStatus:
         elif isinstance(message, mavlink.MAVLink_vibration_message):
             self.clipping = message.clipping_0
         elif isinstance(message, mavlink.MAVLink_statustext_message):
-            self.texts.append(message.text)
+            text = self._chunks.add(message.text, message.id, message.chunk_seq)
+            if text is not None:
+                self.texts.append(text)
 
 
 @dataclass

@@ -6,6 +6,7 @@ import numpy as np
 import pymavlink.dialects.v20.common as mavlink
 import pytest
 from free_bench import GROUND, FreeBench, config_of, item, mode
+from idc_controller.geometry.box import Wall
 
 from gcs.errors import UnusableInput
 from gcs.mavlink import px4
@@ -13,7 +14,6 @@ from gcs.mission.model import Fault, Obstacle
 from gcs.record.reader import read_table
 from gcs.record.run_data import read_run
 from gcs.record.tables import truth_columns
-from idc_controller.geometry.box import Wall
 from vehicle_sim.faults.fault_injector import FaultInjector
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.free_world import FreeWorld

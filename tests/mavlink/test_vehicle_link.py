@@ -130,6 +130,14 @@ def test_landed_state_and_texts_are_kept(linked):
     assert status.last_text == " (text 29)" and list(status.texts) == [f"text {number}" for number in range(10, 30)]
 
 
+def test_text_in_chunks_is_kept_as_one(linked):
+    status, text = linked.link.status, "Take-off denied: " + "x" * 60
+    linked.send(1.0, mavlink.MAVLink_statustext_message(4, text[:50].encode(), 9, 0))
+    assert status.last_text == ""
+    linked.send(1.0, mavlink.MAVLink_statustext_message(4, text[50:].encode(), 9, 1))
+    assert list(status.texts) == [text]
+
+
 def test_parameter_that_is_answered_is_known(linked):
     linked.send(1.0, mavlink.MAVLink_param_value_message(b"THR_MAX", 27.5, mavlink.MAV_PARAM_TYPE_REAL32, 1, 0))
     assert linked.link.status.parameters == {"THR_MAX": 27.5}

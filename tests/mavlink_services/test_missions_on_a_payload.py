@@ -91,8 +91,10 @@ def test_only_the_ground_in_control_changes_plans() -> None:
     bench = Bench(plans=MissionBench().plans)
     bench.streaming[GROUND, 255] = attitude_target()
     bench.run(0.2)
-    assert bench.result(OFFBOARD) == bench.result(ARM) == m.MAV_RESULT_ACCEPTED
     bench.send(m.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3), STRANGER)
+    assert answers(bench, m.MAVLink_mission_count_message(1, 1, 1), STRANGER)[-1].get_type() == "MISSION_REQUEST_INT"
+    assert bench.result(OFFBOARD) == bench.result(ARM) == m.MAV_RESULT_ACCEPTED
+    assert answers(bench, item_message(0, waypoint()), STRANGER)[-1].type == m.MAV_MISSION_DENIED
     for message in (
         m.MAVLink_mission_count_message(1, 1, 2), m.MAVLink_mission_write_partial_list_message(1, 1, 0, 0),
     ):  # fmt: skip

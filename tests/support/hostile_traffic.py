@@ -8,6 +8,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.frames import spans
+from gcs.mavlink.layout import LAYOUTS
 from vehicle_sim.faults.fault_injector import FaultInjector
 
 REMEMBERED = 64  # genuine datagrams that may be imitated
@@ -125,7 +126,7 @@ class HostileTraffic:
         frame[5] = system
         if draw.random() < 0.2:
             frame[6] = draw.randrange(256)
-        kind = mavlink.mavlink_map[int.from_bytes(frame[7:10], "little")]
+        kind = LAYOUTS[int.from_bytes(frame[7:10], "little")].kind
         struct.pack_into("<H", frame, len(frame) - 2, mavlink.x25crc(bytes(frame[1:-2]) + bytes([kind.crc_extra])).crc)
         return bytes(frame), address
 

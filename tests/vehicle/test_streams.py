@@ -12,7 +12,7 @@ from gcs.mavlink.codec import Codec
 from gcs.mavlink.layout import packed
 from gcs.mavlink.services.peer import Peer, Stream
 from gcs.mavlink.services.peers import Peers
-from vehicle_sim.mavlink.streams import default_intervals
+from vehicle_sim.mavlink.streams import OFFSETS, default_intervals
 
 OWN, UNIT = px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT
 HEARTBEAT, ATTITUDE = mavlink.MAVLINK_MSG_ID_HEARTBEAT, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION
@@ -37,6 +37,24 @@ def test_stream_is_due_at_the_next_multiple_of_its_interval(now, due):
     assert stream.due == -math.inf and stream.key == (OWN, HEARTBEAT)
     assert stream.take(sample(), now, 0.04) == BEAT
     assert stream.due == pytest.approx(due)
+
+
+def test_stream_with_an_offset_begins_with_it_and_is_repeated_at_once():
+    stream = Stream(OWN, HEARTBEAT, 1.0, 0.08)
+    assert stream.take(sample(), 5.02, 0.04) == () and stream.due == pytest.approx(5.08)
+    assert stream.take(sample(), 5.08, 0.04) == BEAT and stream.due == pytest.approx(6.08)
+    stream = Stream(OWN, HEARTBEAT, 1.0, 0.08)
+    stream.repeats = 1
+    assert stream.take(sample(), 5.02, 0.04) == BEAT and stream.due == pytest.approx(5.06)
+    assert stream.take(sample(), 5.06, 0.04) == BEAT and stream.due == pytest.approx(5.08)
+
+
+def test_default_streams_stay_within_a_datagram_between_scans():
+    """Those with offsets come with the vehicle's and the payload's navigation, and with nothing else."""
+    intervals = default_intervals(StreamIntervals(), 0.04)
+    for offset in set(OFFSETS.values()):
+        assert offset / 0.04 == pytest.approx(round(offset / 0.04)) and 0.0 < offset < 0.1
+    assert all(intervals[key] >= 1.0 for key in OFFSETS)
 
 
 def test_repetitions_are_due_sooner_and_end():

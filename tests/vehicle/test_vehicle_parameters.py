@@ -6,15 +6,14 @@ import math
 from typing import Any
 
 import numpy as np
+import pymavlink.dialects.v20.ardupilotmega as wide
 import pymavlink.dialects.v20.common as mavlink
 import pytest
-from vehicle_bench import (
-    Bench,
-)
+from vehicle_bench import STRANGER, Bench
 
 from gcs.config.vehicle_settings import VehicleFailsafeSettings
 from gcs.mavlink import px4
-from gcs.mavlink.services.parameters import Parameter, ParameterRefusalError, ParameterTable
+from gcs.mavlink.services.parameter_table import Parameter, ParameterRefusalError, ParameterTable
 
 
 def value_of(messages: list[Any]) -> dict[str, Any]:
@@ -25,7 +24,8 @@ def value_of(messages: list[Any]) -> dict[str, Any]:
 def test_parameter_list_is_complete_and_byte_wise(bench: Bench) -> None:
     bench.send(mavlink.MAVLink_param_request_list_message(1, 1))
     bench.collect()
-    values = bench.got("PARAM_VALUE")
+    check, *values = bench.got("PARAM_VALUE")
+    assert (check.param_id, check.param_index, check.param_count) == ("_HASH_CHECK", 0xFFFF, len(values))
     assert [m.param_index for m in values] == list(range(values[0].param_count))
     table = value_of(values)
     assert table["SYS_AUTOSTART"] == 4001 and isinstance(table["SYS_AUTOSTART"], int)
@@ -37,7 +37,10 @@ def test_parameters_are_read_by_name_and_by_index(bench: Bench) -> None:
     assert value_of(bench.request(read_request(1, 1, b"MIS_TAKEOFF_ALT", -1))) == {"MIS_TAKEOFF_ALT": 2.5}
     [first] = bench.request(read_request(1, 1, b"", 0))
     assert first.param_index == 0
-    assert bench.request(read_request(1, 1, b"NO_SUCH", -1)) == [] and bench.request(read_request(1, 1, b"", 999)) == []
+    for name, index in ((b"NO_SUCH", -1), (b"", 999)):
+        [error] = bench.request(read_request(1, 1, name, index))
+        assert (error.get_type(), error.param_id, error.param_index) == ("PARAM_ERROR", name.decode(), index)
+        assert error.error == wide.MAV_PARAM_ERROR_DOES_NOT_EXIST and error.target_system == 255
 
 
 @pytest.mark.parametrize(
@@ -55,9 +58,19 @@ def test_parameters_are_read_by_name_and_by_index(bench: Bench) -> None:
 def test_parameters_are_set_or_the_kept_value_is_answered(
     bench: Bench, name: str, value: float, kind: int, stored: Any
 ) -> None:
-    answer = value_of(bench.request(mavlink.MAVLink_param_set_message(1, 1, name.encode(), value, kind)))
-    assert answer == {name: stored}
+    answers = bench.request(mavlink.MAVLink_param_set_message(1, 1, name.encode(), value, kind))
+    assert value_of(answers) == {name: stored}
+    errors = [m for m in answers if m.get_type() == "PARAM_ERROR"]
+    assert len(errors) == (bench.vehicle.parameters[name] != pytest.approx(value) if kind == 9 else stored != 20)
     assert bench.vehicle.parameters[name] == stored
+
+
+def test_value_that_was_set_is_told_to_all_peers_and_a_refusal_to_its_sender(bench: Bench) -> None:
+    bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3), STRANGER)
+    for value, told in ((0.3, 1), (-1.0, 1)):
+        bench.request(mavlink.MAVLink_param_set_message(1, 1, b"COM_OF_LOSS_T", value, 9))
+        assert len(bench.got("PARAM_VALUE", STRANGER)) == told
+    assert len(bench.got("PARAM_VALUE")) == 2 and not bench.got("PARAM_ERROR", STRANGER)
 
 
 def test_real_parameters_have_the_precision_of_the_wire_and_integers_are_exact() -> None:

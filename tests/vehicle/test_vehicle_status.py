@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from importlib.metadata import version as package_version
 
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
@@ -124,7 +125,12 @@ def test_version_tells_capabilities_and_the_vehicle(still: Bench) -> None:
     assert capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
     assert capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_INT
     assert not capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_FLOAT
-    assert (version.pop("flight_sw_version"), version.pop("uid")) == (0x00010000, 1)
+    assert capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_COMMAND_INT
+    assert not capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_FTP
+    software = version.pop("flight_sw_version")
+    numbers = [int(part) for part in package_version("cooplift").split(".")]
+    assert [software >> 24, software >> 16 & 0xFF, software >> 8 & 0xFF] == numbers and software & 0xFF == 0
+    assert version.pop("uid") == 1 and bytes(version.pop("uid2")) == b"cooplift" + bytes(9) + b"\1"
     assert version == {}
 
 

@@ -24,6 +24,11 @@ from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement
 
 NO_POINTS = np.empty((0, 3))
+SLOW = (
+    "SYSTEM_TIME", "ALTITUDE", "HIGHRES_IMU", "SCALED_PRESSURE", "ESTIMATOR_STATUS", "RC_CHANNELS",
+    "NAV_CONTROLLER_OUTPUT", "ODOMETRY", "SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS",
+)  # fmt: skip
+"""Streams of one second, most of them to the ports of clients only."""
 
 
 def test_ports_of_clients_get_all_streams_from_the_start_and_for_ever_without_an_answer() -> None:
@@ -34,7 +39,7 @@ def test_ports_of_clients_get_all_streams_from_the_start_and_for_ever_without_an
     needed = {
         "HEARTBEAT", "SYS_STATUS", "EXTENDED_SYS_STATE", "ATTITUDE", "ATTITUDE_QUATERNION", "LOCAL_POSITION_NED",
         "GLOBAL_POSITION_INT", "GPS_RAW_INT", "HOME_POSITION", "BATTERY_STATUS", "VFR_HUD", "ATTITUDE_TARGET",
-        "VIBRATION", "MISSION_CURRENT",
+        "VIBRATION", *SLOW, "MISSION_CURRENT", "CURRENT_MODE",
     }  # fmt: skip
     for address in (GROUND, STRANGER):
         assert {m.get_type() for m in bench.inbox[address] if m.get_srcSystem() == 1} == needed
@@ -45,6 +50,18 @@ def test_ports_of_clients_get_all_streams_from_the_start_and_for_ever_without_an
         assert len(bench.got("ATTITUDE_QUATERNION", address)) == 50 and len(bench.got("HEARTBEAT", address)) >= 1
     assert len(bench.got("LOCAL_POSITION_NED", GROUND, PAYLOAD_UNIT)) == 50
     assert not bench.got("LOCAL_POSITION_NED", STRANGER, PAYLOAD_UNIT)
+
+
+def test_port_of_a_client_gets_more_streams_than_who_calls_in() -> None:
+    bench = Bench(clients={GROUND: True})
+    bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3), STRANGER)
+    bench.run(2.5)
+    for kind in SLOW:
+        assert len(bench.got(kind, GROUND)) == 3
+        assert len(bench.got(kind, STRANGER)) == (3 if kind == "SYSTEM_TIME" else 0)
+    bench.result(command(511, mavlink.MAVLINK_MSG_ID_ODOMETRY, 20_000), STRANGER)
+    bench.run(0.2)
+    assert len(bench.got("ODOMETRY", STRANGER)) >= 10
 
 
 def test_client_that_falls_silent_keeps_its_streams_on_its_port_alone() -> None:
@@ -74,7 +91,8 @@ def test_streams_have_their_rates_and_stamps_of_samples(bench: Bench) -> None:
     expected = {
         "ATTITUDE_QUATERNION": 200, "LOCAL_POSITION_NED": 200, "ATTITUDE": 40, "ATTITUDE_TARGET": 200,
         "GLOBAL_POSITION_INT": 20, "EXTENDED_SYS_STATE": 20, "VFR_HUD": 8, "HEARTBEAT": 4, "SYS_STATUS": 4,
-        "GPS_RAW_INT": 4, "HOME_POSITION": 2, "BATTERY_STATUS": 2, "MISSION_CURRENT": 4,
+        "GPS_RAW_INT": 4, "HOME_POSITION": 2, "BATTERY_STATUS": 2, "CURRENT_MODE": 2, "SYSTEM_TIME": 4,
+        "MISSION_CURRENT": 4,
     }  # fmt: skip
     assert counts == expected
     stamps = [m.time_boot_ms for m in bench.got("ATTITUDE_QUATERNION")]

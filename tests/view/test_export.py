@@ -178,7 +178,8 @@ def systems_in(path):
     """Messages by system, of those that the system itself has sent, and of all others."""
     log, found = mavutil.mavlink_connection(str(path), dialect="ardupilotmega"), Counter()
     while (message := log.recv_match()) is not None:
-        found[message.get_srcSystem(), message.get_type()] += 1
+        # Of a message that its dialect lacks (CURRENT_MODE) pymavlink does not tell the sender.
+        found[message.get_msgbuf()[5], message.get_type()] += 1
     return found
 
 

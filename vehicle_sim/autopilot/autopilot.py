@@ -12,7 +12,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 from gcs.config.vehicle_settings import AutopilotSettings
 from gcs.mavlink import px4
 from gcs.mavlink.services.answer import ACCEPTED, Answer, denied, rejected_for_now
-from gcs.mavlink.services.parameters import ParameterTable
+from gcs.mavlink.services.parameter_table import ParameterTable
 from idc_controller.rotations_float import Vector, attitude_of_force, euler_of
 from vehicle_sim.autopilot import modes
 from vehicle_sim.autopilot.actuation import NO_RATES, Actuation

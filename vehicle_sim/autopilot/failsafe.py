@@ -74,6 +74,7 @@ def _data_link_lost(state: FlightState, now: float) -> bool:
         and state.hold is not None
         and not state.is_descending
         and now - state.link_time > state.parameters[px4.PARAM_LINK_LOSS]
+        and state.parameters[px4.PARAM_LINK_LOSS_ACTION] == px4.LINK_LOSS_LAND
     )
 
 

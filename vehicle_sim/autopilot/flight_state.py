@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 from gcs.config.vehicle_settings import AutopilotSettings
 from gcs.mavlink import px4
-from gcs.mavlink.services.parameters import ParameterTable
+from gcs.mavlink.services.parameter_table import ParameterTable
 from idc_controller.rotations_float import euler_of
 from vehicle_sim.autopilot.actuation import Actuation
 from vehicle_sim.autopilot.airframe import Airframe

@@ -1,11 +1,23 @@
 """A vehicle as the MAVLink services command it: what one that carries a payload with others does, and refuses."""
 
+from collections.abc import Mapping
+
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+
 from gcs.mavlink import px4
+from gcs.mavlink.messages import Message
 from gcs.mavlink.services.aircraft import Reposition, Sender
 from gcs.mavlink.services.answer import Answer
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.modes import team_only
 from vehicle_sim.mavlink.control_owner import ControlOwner
+
+_ATTITUDE_ONLY = "Position set-points are ignored on a payload: only SET_ATTITUDE_TARGET is flown"
+TEAM_SETPOINTS: Mapping[type[Message], str] = {
+    mavlink.MAVLink_set_position_target_local_ned_message: _ATTITUDE_ONLY,
+    mavlink.MAVLink_set_position_target_global_int_message: _ATTITUDE_ONLY,
+}
+"""Set-points that one vehicle of a team does not fly, and what is said of them."""
 
 
 class CoupledAircraft:
@@ -14,6 +26,15 @@ class CoupledAircraft:
     def __init__(self, autopilot: Autopilot, owner: ControlOwner) -> None:
         self._autopilot = autopilot
         self._owner = owner
+
+    modes = (px4.MODE_HOLD, px4.MODE_LAND, px4.MODE_OFFBOARD, px4.MODE_POSCTL, px4.MODE_ALTCTL, px4.MODE_MANUAL)
+    """Those of sticks on the ground only."""
+    obeys_broadcasts = False
+    """One that missed the command would be left behind by the others."""
+
+    def arming_problem(self, now: float) -> str | None:
+        """See :meth:`.Autopilot.arming_problem`."""
+        return self._autopilot.arming_problem(now)
 
     def arm(self, now: float, force: bool = False) -> Answer:
         """See :meth:`.Autopilot.arm`."""

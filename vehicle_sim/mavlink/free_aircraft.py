@@ -23,6 +23,16 @@ class FreeAircraft:
         self._frame = frame
         self._items: tuple[MissionItem, ...] = ()
 
+    modes = (
+        px4.MODE_TAKEOFF, px4.MODE_HOLD, px4.MODE_MISSION, px4.MODE_RETURN, px4.MODE_LAND, px4.MODE_OFFBOARD,
+        px4.MODE_POSCTL, px4.MODE_ALTCTL,
+    )  # fmt: skip
+    obeys_broadcasts = True
+
+    def arming_problem(self, now: float) -> str | None:
+        """See :meth:`.Autopilot.arming_problem`."""
+        return self._autopilot.arming_problem(now)
+
     def arm(self, now: float, force: bool = False) -> Answer:
         """See :meth:`.FreeAutopilot.arm`."""
         return self._autopilot.arm(now, force)

@@ -5,7 +5,8 @@ from collections.abc import Callable, Sequence
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
-from gcs.mavlink.services.mission_item import MissionItem
+from gcs.mavlink.services.mission_item import UNKNOWN, MissionItem
+from gcs.mission.commands import Command
 from idc_controller.rotations_float import Vector
 from vehicle_sim.autopilot.free.mission import Action, MissionStep
 from vehicle_sim.mavlink.geodesy import LocalFrame
@@ -36,8 +37,10 @@ def _place(item: MissionItem, frame: LocalFrame, home: Vector) -> Vector:
     altitude = item.z
     if item.frame in _ABOVE_HOME:
         altitude += frame.altitude - home[2]
-    if item.x == 0 and item.y == 0:
+    if (item.x, item.y) in ((0, 0), (UNKNOWN, UNKNOWN)):
         return math.nan, math.nan, frame.altitude - altitude
+    if math.isnan(altitude):  # flown to at the altitude where it is
+        return *frame.local(item.x * 1e-7, item.y * 1e-7, frame.altitude)[:2], math.nan
     return frame.local(item.x * 1e-7, item.y * 1e-7, altitude)
 
 
@@ -95,7 +98,9 @@ COMMANDS: dict[int, Reader] = {
     mavlink.MAV_CMD_NAV_LAND: _land,
     mavlink.MAV_CMD_NAV_TAKEOFF: _take_off,
     mavlink.MAV_CMD_NAV_LOITER_TO_ALT: lambda item, place: MissionStep(Action.FLY, place),
+    Command.CONDITION_GATE: lambda item, place: MissionStep(Action.FLY, place),
     mavlink.MAV_CMD_NAV_DELAY: _delay,
+    mavlink.MAV_CMD_CONDITION_DELAY: _delay,
     mavlink.MAV_CMD_DO_CHANGE_SPEED: _speed,
     mavlink.MAV_CMD_DO_JUMP: _jump,
 }
@@ -106,6 +111,7 @@ _PLACES = (
     mavlink.MAV_CMD_NAV_LOITER_UNLIM,
     mavlink.MAV_CMD_NAV_LOITER_TIME,
     mavlink.MAV_CMD_NAV_LOITER_TO_ALT,
+    Command.CONDITION_GATE,
     mavlink.MAV_CMD_NAV_LAND,
     mavlink.MAV_CMD_NAV_TAKEOFF,
 )

@@ -5,10 +5,43 @@ from dataclasses import fields
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.config.vehicle_settings import StreamIntervals
-from gcs.mavlink import px4
+from gcs.mavlink import newer_messages, px4
 from gcs.mavlink.services.aircraft import MessageKey
 
 _AUTOPILOT, _PAYLOAD = px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT
+
+#: Offsets (s) of streams from the multiples of their intervals: with other telemetry, but between scans of the range
+#: sensor, so that what is due at one instant stays within a datagram.
+OFFSETS: dict[MessageKey, float] = {
+    **dict.fromkeys(
+        [
+            (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_SYSTEM_TIME),
+            (_AUTOPILOT, newer_messages.CURRENT_MODE),
+            (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_ALTITUDE),
+            (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_HIGHRES_IMU),
+            (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE),
+            (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_ESTIMATOR_STATUS),
+            (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_RC_CHANNELS),
+            (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED),
+            (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT),
+        ],
+        0.04,
+    ),
+    **dict.fromkeys(
+        [
+            (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_ODOMETRY),
+            (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW),
+            (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_ACTUATOR_OUTPUT_STATUS),
+        ],
+        0.08,
+    ),
+}
+
+CLIENT_STREAMS: frozenset[MessageKey] = frozenset(OFFSETS) - {
+    (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_SYSTEM_TIME),
+    (_AUTOPILOT, newer_messages.CURRENT_MODE),
+}
+"""Streams that only the ports of clients get unasked: a ground that calls in may do so by a slow link."""
 
 
 def default_intervals(intervals: StreamIntervals, telemetry_interval: float) -> dict[MessageKey, float]:
@@ -21,7 +54,7 @@ def default_intervals(intervals: StreamIntervals, telemetry_interval: float) -> 
     return {
         # The settings have the names of the messages.
         **{
-            (_AUTOPILOT, getattr(mavlink, f"MAVLINK_MSG_ID_{setting.name.upper()}")): getattr(intervals, setting.name)
+            (_AUTOPILOT, message_number(setting.name)): getattr(intervals, setting.name)
             for setting in fields(intervals)
         },
         (_PAYLOAD, mavlink.MAVLINK_MSG_ID_HEARTBEAT): intervals.heartbeat,
@@ -34,3 +67,9 @@ def default_intervals(intervals: StreamIntervals, telemetry_interval: float) -> 
         (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D): telemetry_interval,
         (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE): telemetry_interval,
     }
+
+
+def message_number(name: str) -> int:
+    """Return the id of a message by its name, in small letters or capitals."""
+    number: int | None = getattr(mavlink, f"MAVLINK_MSG_ID_{name.upper()}", None)
+    return getattr(newer_messages, name.upper()) if number is None else number

@@ -7,12 +7,13 @@ from types import MappingProxyType
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.config.vehicle_settings import AutopilotSettings, VehicleLinkSettings
-from gcs.mavlink import px4
+from gcs.mavlink import newer_messages, px4
 from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.messages import BROADCAST
 from gcs.mavlink.services.commands import CommandServer
 from gcs.mavlink.services.dispatcher import Dispatcher, Request
+from gcs.mavlink.services.files import FileServices
 from gcs.mavlink.services.link import LinkServices
 from gcs.mavlink.services.mission_store import MissionStore
 from gcs.mavlink.services.missions import MissionServer
@@ -21,19 +22,20 @@ from gcs.mavlink.services.parameters import ParameterServer
 from gcs.mavlink.services.peer import Peer
 from gcs.mavlink.services.peers import Peers
 from gcs.mavlink.services.streams import StreamRequests
+from gcs.mavlink.services.unserved_inputs import STICKS, UnservedInputs
 from gcs.mission.model import DEFAULT_HOME, Home
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.free.autopilot import FreeAutopilot
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.autopilot.vehicle_parameters import vehicle_parameters
-from vehicle_sim.mavlink.aircraft import CoupledAircraft
+from vehicle_sim.mavlink.aircraft import TEAM_SETPOINTS, CoupledAircraft
 from vehicle_sim.mavlink.control_owner import ControlOwner
 from vehicle_sim.mavlink.free_aircraft import FreeAircraft
 from vehicle_sim.mavlink.geodesy import LocalFrame
 from vehicle_sim.mavlink.mission_plans import CoupledPlans, MissionPlans
 from vehicle_sim.mavlink.setpoint_server import PositionSetpointServer, SetpointServer
-from vehicle_sim.mavlink.streams import default_intervals
+from vehicle_sim.mavlink.streams import CLIENT_STREAMS, OFFSETS, default_intervals
 from vehicle_sim.mavlink.telemetry import Telemetry
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
@@ -74,6 +76,7 @@ class Vehicle:
         intervals = default_intervals(link.intervals, 1.0 / telemetry_rate)
         if free:
             intervals = {key: interval for key, interval in intervals.items() if key[0] == px4.AUTOPILOT_COMPONENT}
+        of_caller = {key: interval for key, interval in intervals.items() if key not in CLIENT_STREAMS}
         self.system_id = system_id
         self.parameters = vehicle_parameters(airframe, system_id, round(onboard_rate), autopilot, free=free)
         self.autopilot = (FreeAutopilot if free else Autopilot)(airframe, self.parameters, autopilot, arrays)
@@ -88,7 +91,12 @@ class Vehicle:
         """System and component of all that it sends."""
         self._peers = Peers(
             lambda address, with_payload: Peer(
-                address, self._own, intervals, link, silent=None if with_payload else px4.PAYLOAD_UNIT_COMPONENT
+                address,
+                self._own,
+                intervals if address in clients else of_caller,
+                link,
+                silent=None if with_payload else px4.PAYLOAD_UNIT_COMPONENT,
+                offsets=OFFSETS,
             ),
             clients,
             link,
@@ -102,6 +110,10 @@ class Vehicle:
             frame = LocalFrame(home)
             self._setpoints: SetpointServer = PositionSetpointServer(self.autopilot, owner, clock, frame)
             self.aircraft = FreeAircraft(self.autopilot, owner, frame)
+            self.telemetry.capabilities |= (
+                mavlink.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
+                | mavlink.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
+            )
             plans: MissionStore = MissionPlans(home, self.aircraft)
         else:
             plans = CoupledPlans()
@@ -118,11 +130,13 @@ class Vehicle:
             StreamRequests(component, self.telemetry, owner, link)
             for component in (px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT)
         )
-        commands = CommandServer(self.aircraft, owner, self.telemetry, streams)
-        commands.register(self._dispatcher)
-        commands.add(mavlink.MAV_CMD_DO_SET_MISSION_CURRENT, self._missions.do_set_mission_current)
+        self.commands = CommandServer(self.aircraft, owner, self.telemetry, streams, self.parameters)
+        self.commands.register(self._dispatcher)
+        self.commands.add(mavlink.MAV_CMD_DO_SET_MISSION_CURRENT, self._missions.do_set_mission_current)
         self._other_components = OtherComponents(own, own if free else payload_unit, of_payload_unit)
-        ParameterServer(self.parameters, owner).register(self._dispatcher)
+        ParameterServer(self.parameters, owner, self._peers).register(self._dispatcher)
+        FileServices().register(self._dispatcher)
+        UnservedInputs(system_id, STICKS if free else {**STICKS, **TEAM_SETPOINTS}).register(self._dispatcher)
 
     @property
     def refused_setpoints(self) -> int:
@@ -208,6 +222,8 @@ class Vehicle:
     def send_changes(self) -> None:
         """Send the HEARTBEAT anew, and what is to be said to the operator."""
         self._sent_changes = self.autopilot.changes
-        self._peers.repeat(mavlink.MAVLINK_MSG_ID_HEARTBEAT, mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE)
+        self._peers.repeat(
+            mavlink.MAVLINK_MSG_ID_HEARTBEAT, mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE, newer_messages.CURRENT_MODE
+        )
         for text in self.autopilot.take_notices():
             self._peers.send_statustext(text)

@@ -1,6 +1,6 @@
 """What the services serve: one aircraft, be it a vehicle or the team, with its commands and its messages."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple, Protocol
 
 from gcs.mavlink.address import Address
@@ -32,6 +32,17 @@ class Reposition(NamedTuple):
 
 class Aircraft(Protocol):
     """What an aircraft does when it is commanded; every refusal says why. Times in s."""
+
+    @property
+    def modes(self) -> Sequence[int]:
+        """Return PX4's custom modes that it can enter, in the order in which they are offered."""
+
+    @property
+    def obeys_broadcasts(self) -> bool:
+        """Return True if a command to all systems is for it, too."""
+
+    def arming_problem(self, now: float) -> str | None:
+        """Return why it cannot be armed now, None if it can."""
 
     def arm(self, now: float, force: bool = False) -> Answer:
         """Arm; ``force`` skips what checks may be skipped."""
@@ -77,6 +88,9 @@ class MessageSource(Protocol):
     @property
     def builders(self) -> Mapping[MessageKey, Callable[[float], Built]]:
         """Return what builds the messages of a component and id at a time (s): none while there is no data."""
+
+    def absence(self, key: MessageKey) -> str | None:
+        """Return why a message will not be sent, whoever requests it; None: it will."""
 
 
 class Sample:

@@ -1,105 +1,152 @@
-"""MAVLink commands to an aircraft: the ground that may send them, their execution, and the answer."""
+"""MAVLink commands to an aircraft: who may send them, that each is done once, and the answer."""
 
-import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
-from gcs.mavlink import px4
-from gcs.mavlink.services.aircraft import Aircraft, Control, MessageSource
-from gcs.mavlink.services.answer import ACCEPTED, UNSUPPORTED, Answer, denied
+from gcs.mavlink.messages import BROADCAST
+from gcs.mavlink.newer_messages import COMMAND_CANCEL, NEWER
+from gcs.mavlink.services.aircraft import Aircraft, Control, MessageSource, Sender
+from gcs.mavlink.services.answer import UNSUPPORTED, Answer, denied
 from gcs.mavlink.services.dispatcher import Command, Dispatcher, Request
-from gcs.mavlink.services.peer import Peer
-from gcs.mavlink.services.streams import StreamRequests, whole
+from gcs.mavlink.services.flight_commands import FlightCommands
+from gcs.mavlink.services.modes import ModeCommands
+from gcs.mavlink.services.parameter_table import ParameterTable
+from gcs.mavlink.services.streams import StreamRequests
+from gcs.mavlink.services.system_commands import SystemCommands
 
-#: Requests of information, or about the sender's own link: every ground may send them.
-_HARMLESS = (
-    mavlink.MAV_CMD_REQUEST_MESSAGE,
-    mavlink.MAV_CMD_SET_MESSAGE_INTERVAL,
-    mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES,
+#: Requests of information, or about the sender's own link: every ground may send them, to all systems at once, too.
+INFORMATION = frozenset(
+    (
+        mavlink.MAV_CMD_REQUEST_MESSAGE,
+        mavlink.MAV_CMD_SET_MESSAGE_INTERVAL,
+        mavlink.MAV_CMD_GET_MESSAGE_INTERVAL,
+        mavlink.MAV_CMD_GET_HOME_POSITION,
+        mavlink.MAV_CMD_REQUEST_PROTOCOL_VERSION,
+        mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES,
+    )
 )
+
+_REMEMBERED = 32
+"""Senders whose last command is kept."""
+_DUPLICATE_TIME = 5.0
+"""Time (s) in which a command that is sent again is the same one."""
+
+_Contents = tuple[Any, ...]
+
+
+class _Done(NamedTuple):
+    """The last command of a sender that was carried out, and its answer."""
+
+    contents: _Contents
+    confirmation: int
+    answer: Answer
+    time: float
 
 
 class CommandServer:
-    """COMMAND_LONG, COMMAND_INT and SET_MODE."""
+    """COMMAND_LONG, COMMAND_INT, COMMAND_CANCEL and SET_MODE; ``handlers`` by MAV_CMD, others are unsupported."""
 
-    def __init__(self, aircraft: Aircraft, control: Control, source: MessageSource, streams: StreamRequests) -> None:
+    def __init__(
+        self,
+        aircraft: Aircraft,
+        control: Control,
+        source: MessageSource,
+        streams: StreamRequests,
+        parameters: ParameterTable,
+    ) -> None:
         self._aircraft = aircraft
         self._control = control
-        self._builders = source.builders
-        self._commands: dict[int, Callable[[Command, Request], Answer]] = {
-            mavlink.MAV_CMD_COMPONENT_ARM_DISARM: self._arm_disarm,
-            mavlink.MAV_CMD_DO_SET_MODE: self._do_set_mode,
-            mavlink.MAV_CMD_NAV_LAND: self._entering(px4.MODE_LAND),
-            mavlink.MAV_CMD_NAV_TAKEOFF: self._entering(px4.MODE_TAKEOFF),
-            mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: self._entering(px4.MODE_RETURN),
-            mavlink.MAV_CMD_REQUEST_MESSAGE: streams.request_message,
-            mavlink.MAV_CMD_SET_MESSAGE_INTERVAL: streams.set_message_interval,
-            mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: self._request_capabilities,
+        self._modes = ModeCommands(aircraft, control)
+        streams.answer_with(self._modes.REQUESTED, self._modes.send_available)
+        self.handlers: Mapping[int, Callable[[Command, Request], Answer]] = {
+            **FlightCommands(aircraft, source).handlers,
+            **self._modes.handlers,
+            **SystemCommands(aircraft, parameters, streams).handlers,
+            **streams.handlers,
         }
+        self._done: dict[tuple[Sender, int], _Done] = {}
 
     def register(self, dispatcher: Dispatcher) -> None:
         """Take the messages of this service."""
         dispatcher.register(mavlink.MAVLink_command_long_message, self._on_command)
         dispatcher.register(mavlink.MAVLink_command_int_message, self._on_command)
-        dispatcher.register(mavlink.MAVLink_set_mode_message, self._on_set_mode)
+        dispatcher.register_fields(NEWER[COMMAND_CANCEL], self._on_cancel)
+        self._modes.register(dispatcher)
 
     def add(self, command: int, run: Callable[[Command, Request], Answer]) -> None:
         """Carry out a command of another service."""
-        self._commands[command] = run
+        self.handlers = {**self.handlers, command: run}
 
     def _on_command(self, message: Command, request: Request) -> None:
-        run = self._commands.get(message.command)
-        if message.command not in _HARMLESS and self._control.is_stranger(request.sender, request.now):
-            answer = denied("Command denied: another ground station is in control")
-        elif run is None:
-            answer = UNSUPPORTED
-        else:
-            answer = run(message, request)
-        _explain(answer, request.peer)
+        is_information = message.command in INFORMATION
+        done = None if is_information else self._repeated(message, request)
+        if done is not None:
+            self._acknowledge(message.command, done.answer, request)
+            return
+        answer = self._answer(message, request, is_information)
+        if answer.text:
+            request.peer.send_statustext(answer.text)
+        if not is_information:
+            self._remember(message, request, answer)
+        self._acknowledge(message.command, answer, request)
+
+    def _answer(self, message: Command, request: Request, is_information: bool) -> Answer:
+        run = self.handlers.get(message.command)
+        if is_information and run is not None:
+            return run(message, request)
+        if self._control.is_stranger(request.sender, request.now):
+            return denied("Command denied: another ground station is in control")
+        if run is None:
+            return UNSUPPORTED
+        if message.target_system == BROADCAST and not self._aircraft.obeys_broadcasts:
+            return denied("Command to all systems denied: on a payload each vehicle is commanded by its own system id")
+        return run(message, request)
+
+    def _acknowledge(self, command: int, answer: Answer, request: Request) -> None:
         request.peer.reply(
-            mavlink.MAVLink_command_ack_message(message.command, answer.result, 0, 0, request.system, request.component)
+            mavlink.MAVLink_command_ack_message(
+                command, answer.result, 0, answer.parameter, request.system, request.component
+            )
         )
 
-    def _on_set_mode(self, message: mavlink.MAVLink_set_mode_message, request: Request) -> None:
-        if self._control.is_stranger(request.sender, request.now):
-            answer = denied("Mode denied: another ground station is in control")
-        elif not message.base_mode & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:
-            answer = denied("Mode denied: only custom modes are known")
-        else:
-            answer = self._aircraft.enter_mode(message.custom_mode, request.sender, request.now)
-        _explain(answer, request.peer)
+    def _repeated(self, message: Command, request: Request) -> _Done | None:
+        """Return what was done already if ``message`` repeats it: its acknowledgement was lost."""
+        done = self._done.get((request.sender, request.component))
+        confirmation = _confirmation(message)
+        if done is None or confirmation <= done.confirmation or done.contents != _contents(message):
+            return None
+        return done if request.now - done.time < _DUPLICATE_TIME else None
 
-    def _arm_disarm(self, message: Command, request: Request) -> Answer:
-        force = message.param2 == px4.FORCE_ARM_DISARM
-        if message.param1 == 1.0:
-            return self._aircraft.arm(request.now, force)
-        if message.param1 == 0.0:
-            return self._aircraft.disarm(request.now, force)
-        return denied(f"Arming denied: param1 {message.param1} is neither 0 nor 1")
+    def _remember(self, message: Command, request: Request, answer: Answer) -> None:
+        """Keep a command that was carried out; one that was refused may be tried again."""
+        key = request.sender, request.component
+        self._done.pop(key, None)
+        if answer.result != mavlink.MAV_RESULT_ACCEPTED:
+            return
+        if len(self._done) >= _REMEMBERED:
+            del self._done[next(iter(self._done))]
+        self._done[key] = _Done(_contents(message), _confirmation(message), answer, request.now)
 
-    def _do_set_mode(self, message: Command, request: Request) -> Answer:
-        base_mode, main = whole(message.param1), whole(message.param2)
-        sub = 0 if math.isnan(message.param3) else whole(message.param3)
-        if base_mode is None or main is None or sub is None:
-            return denied("Mode denied: parameters are not whole numbers")
-        if not base_mode & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:
-            return denied("Mode denied: only custom modes are known")
-        if main != px4.MainMode.AUTO:
-            sub = 0
-        return self._aircraft.enter_mode(px4.encode_custom_mode(main, sub), request.sender, request.now)
-
-    def _entering(self, mode: int) -> Callable[[Command, Request], Answer]:
-        """Return what carries out a command that enters a mode."""
-        return lambda message, request: self._aircraft.enter_mode(mode, request.sender, request.now)
-
-    def _request_capabilities(self, message: Command, request: Request) -> Answer:
-        version = mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION
-        request.peer.reply_packed(*self._builders[px4.AUTOPILOT_COMPONENT, version](request.now))
-        return ACCEPTED
+    def _on_cancel(self, fields: tuple[Any, ...], request: Request) -> None:
+        """Answer with the result of the command if it was the sender's last: none is ever in progress."""
+        command = fields[0]
+        done = self._done.get((request.sender, request.component))
+        if done is not None and done.contents[0] == command:
+            self._acknowledge(command, done.answer, request)
 
 
-def _explain(answer: Answer, peer: Peer) -> None:
-    """Send the reason of an answer, if it has one, as a text."""
-    if answer.text:
-        peer.send_statustext(answer.text)
+def _confirmation(message: Command) -> int:
+    """Return how often a command was sent before; COMMAND_INT does not say so."""
+    return message.confirmation if isinstance(message, mavlink.MAVLink_command_long_message) else 0
+
+
+def _contents(message: Command) -> _Contents:
+    """Return command and parameters, NaN equal to itself."""
+    values = [message.param1, message.param2, message.param3, message.param4]
+    if isinstance(message, mavlink.MAVLink_command_long_message):
+        values += [message.param5, message.param6, message.param7]
+    else:
+        values += [message.frame, message.x, message.y, message.z]
+    return (message.command, *map(repr, values))

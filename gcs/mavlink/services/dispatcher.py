@@ -44,6 +44,10 @@ class Dispatcher:
         """Hand the fields of every message of a class, in the order of the wire, to ``handler``."""
         self._handlers[kind] = handler, attrgetter("fields")
 
+    def serves(self, kind: type[Message]) -> bool:
+        """Return True if messages of a class are handed to somebody."""
+        return kind in self._handlers
+
     def dispatch(self, received: Received, request: Request) -> None:
         """Hand a message to its service; one without a service is ignored."""
         if (service := self._handlers.get(received.layout.kind)) is not None:

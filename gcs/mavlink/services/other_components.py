@@ -1,6 +1,6 @@
 """Commands that reach an aircraft but are not its own: to a device whose messages it forwards, or to what is absent."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
@@ -20,10 +20,7 @@ class OtherComponents:
         """``own`` system and component, and those of the ``device``, with the ``streams`` of its messages."""
         self._own = own
         self._device = device
-        self._of_device: dict[int, Callable[[Command, Request], Answer]] = {
-            mavlink.MAV_CMD_REQUEST_MESSAGE: streams.request_message,
-            mavlink.MAV_CMD_SET_MESSAGE_INTERVAL: streams.set_message_interval,
-        }
+        self._of_device: Mapping[int, Callable[[Command, Request], Answer]] = streams.handlers
 
     def handle(self, received: Received, request: Request) -> None:
         """Carry out or refuse a command; the system that it is for answers. What is for nobody here is ignored."""

@@ -1,88 +1,37 @@
-"""The MAVLink parameter protocol, in PX4's byte-wise flavour, and the parameters that it serves."""
+"""The MAVLink parameter protocol, in PX4's byte-wise flavour."""
 
-import math
 import struct
-from dataclasses import dataclass
+from collections.abc import Iterable
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
-from gcs.errors import GcsError
 from gcs.mavlink import px4
+from gcs.mavlink.layout import LAYOUTS
+from gcs.mavlink.messages import BROADCAST, Message
 from gcs.mavlink.services.aircraft import Control
 from gcs.mavlink.services.dispatcher import Dispatcher, Request
+from gcs.mavlink.services.parameter_table import ParameterRefusalError, ParameterTable
+from gcs.mavlink.services.peer import Peer
 
-REAL: int = mavlink.MAV_PARAM_TYPE_REAL32
-INTEGER: int = mavlink.MAV_PARAM_TYPE_INT32
-
-
-class ParameterRefusalError(GcsError):
-    """A parameter that does not exist or may not take the value; ``str`` says why."""
-
-
-@dataclass
-class Parameter:
-    """One parameter. ``limits`` None: the ground may read it only."""
-
-    name: str
-    value: float
-    type: int = REAL
-    limits: tuple[float, float] | None = None
-
-    def __post_init__(self) -> None:
-        if self.type == REAL:
-            self.value = _float32(self.value)  # what is read back is what is used
-
-
-class ParameterTable:
-    """Parameters by name and by index, sorted by name as PX4 does."""
-
-    def __init__(self, parameters: list[Parameter]) -> None:
-        self._parameters = sorted(parameters, key=lambda parameter: parameter.name)
-        self._by_name = {parameter.name: parameter for parameter in self._parameters}
-        self._index = {parameter.name: i for i, parameter in enumerate(self._parameters)}
-        if len(self._index) != len(self._parameters) or any(len(name) > 16 for name in self._index):
-            raise ValueError("parameter names must be unique and at most 16 characters long")
-
-    def __len__(self) -> int:
-        return len(self._parameters)
-
-    def __getitem__(self, name: str) -> float:
-        return self._by_name[name].value
-
-    def by_index(self, index: int) -> Parameter | None:
-        """The parameter at an index of the list, None outside."""
-        return self._parameters[index] if 0 <= index < len(self._parameters) else None
-
-    def by_name(self, name: str) -> Parameter | None:
-        """The parameter of a name, None if there is none."""
-        return self._by_name.get(name)
-
-    def index_of(self, name: str) -> int:
-        """Position of an existing parameter in the list."""
-        return self._index[name]
-
-    def set_from_wire(self, name: str, wire: float, parameter_type: int) -> None:
-        """Store what a PARAM_SET carries. Raises :class:`ParameterRefusalError` and then changes nothing."""
-        parameter = self.by_name(name)
-        if parameter is None:
-            raise ParameterRefusalError(f"{name}: no such parameter")
-        if parameter.limits is None:
-            raise ParameterRefusalError(f"{name}: read-only")
-        if parameter_type != parameter.type:
-            raise ParameterRefusalError(f"{name}: sent as type {parameter_type}, is of type {parameter.type}")
-        value = px4.parameter_from_wire(wire, parameter_type)
-        low, high = parameter.limits
-        if not low <= value <= high:  # NaN, too
-            raise ParameterRefusalError(f"{name}: {value:g} is outside {low:g} .. {high:g}")
-        parameter.value = value
+_VALUE = LAYOUTS[mavlink.MAVLINK_MSG_ID_PARAM_VALUE]
+_HASH = "_HASH_CHECK"
+"""By this name PX4 tells the hash of all parameters, so that a ground may use those that it has kept."""
+_NO_INDEX = 0xFFFF
+_HASH_SIZE = 4
 
 
 class ParameterServer:
-    """PARAM_REQUEST_READ, PARAM_REQUEST_LIST and PARAM_SET. A refused PARAM_SET is answered with the value kept."""
+    """PARAM_REQUEST_READ, PARAM_REQUEST_LIST and PARAM_SET.
 
-    def __init__(self, table: ParameterTable, control: Control) -> None:
+    A refusal is a PARAM_ERROR; of a PARAM_SET the value that is kept follows, for grounds that do not know PARAM_ERROR.
+    A value that was set is told to all peers.
+    """
+
+    def __init__(self, table: ParameterTable, control: Control, peers: Iterable[Peer] = ()) -> None:
+        """``peers``: all who are connected, whenever it is iterated."""
         self._table = table
         self._control = control
+        self._peers = peers
 
     def register(self, dispatcher: Dispatcher) -> None:
         """Take the messages of this service."""
@@ -91,39 +40,60 @@ class ParameterServer:
         dispatcher.register(mavlink.MAVLink_param_set_message, self._on_set)
 
     def _on_read(self, message: mavlink.MAVLink_param_request_read_message, request: Request) -> None:
-        if message.param_index >= 0:
-            self._send(self._table.by_index(message.param_index), request)
+        name, index = message.param_id, message.param_index
+        if index < 0 and name == _HASH:
+            self._send_hash(request)
+            return
+        parameter = self._table.by_index(index) if index >= 0 else self._table.by_name(name)
+        if parameter is None:
+            self._refuse(name, index, mavlink.MAV_PARAM_ERROR_DOES_NOT_EXIST, request)
         else:
-            self._send(self._table.by_name(message.param_id), request)
+            request.peer.reply(self._value(parameter.name))
 
     def _on_list(self, message: mavlink.MAVLink_param_request_list_message, request: Request) -> None:
-        for index in range(len(self._table)):
-            self._send(self._table.by_index(index), request)
+        self._send_hash(request)
+        for parameter in self._table:
+            request.peer.reply(self._value(parameter.name))
 
     def _on_set(self, message: mavlink.MAVLink_param_set_message, request: Request) -> None:
         name = message.param_id
-        if self._control.is_stranger(request.sender, request.now):
-            request.peer.send_statustext(f"{name} denied: another ground is in control")
+        if name == _HASH:
+            return  # the ground's own: it has all parameters already
+        try:
+            if message.target_system == BROADCAST:
+                raise ParameterRefusalError(
+                    f"{name} denied: sent to all systems", mavlink.MAV_PARAM_ERROR_PERMISSION_DENIED
+                )
+            if self._control.is_stranger(request.sender, request.now):
+                raise ParameterRefusalError(
+                    f"{name} denied: another ground is in control", mavlink.MAV_PARAM_ERROR_PERMISSION_DENIED
+                )
+            self._table.set_from_wire(name, message.param_value, message.param_type)
+        except ParameterRefusalError as error:
+            request.peer.send_statustext(str(error))
+            self._refuse(name, -1, error.number, request)
         else:
-            try:
-                self._table.set_from_wire(name, message.param_value, message.param_type)
-            except ParameterRefusalError as error:
-                request.peer.send_statustext(str(error))
-        self._send(self._table.by_name(name), request)
+            for peer in self._peers:
+                if peer is not request.peer:
+                    peer.reply(self._value(name))
+        if self._table.by_name(name) is not None:
+            request.peer.reply(self._value(name))
 
-    def _send(self, parameter: Parameter | None, request: Request) -> None:
-        """Send the value of a parameter; nothing of one that does not exist."""
-        if parameter is None:
-            return
+    def _value(self, name: str) -> Message:
+        """Return the PARAM_VALUE of an existing parameter."""
+        index, count = self._table.index_of(name), len(self._table)
+        parameter = self._table.by_index(index)
+        assert parameter is not None
         value = px4.parameter_to_wire(parameter.value, parameter.type)
-        count, index = len(self._table), self._table.index_of(parameter.name)
+        return mavlink.MAVLink_param_value_message(name.encode(), value, parameter.type, count, index)
+
+    def _send_hash(self, request: Request) -> None:
+        layout, payload = _VALUE.pack(0.0, len(self._table), _NO_INDEX, _HASH.encode(), mavlink.MAV_PARAM_TYPE_UINT32)
+        # Its bytes may be those of a NaN, which a conversion to a float could change.
+        payload = struct.pack("<I", self._table.checksum) + payload[_HASH_SIZE:]
+        request.peer.reply_packed((layout, payload))
+
+    def _refuse(self, name: str, index: int, number: int, request: Request) -> None:
         request.peer.reply(
-            mavlink.MAVLink_param_value_message(parameter.name.encode(), value, parameter.type, count, index)
+            mavlink.MAVLink_param_error_message(request.system, request.component, name.encode(), index, number)
         )
-
-
-def _float32(value: float) -> float:
-    number: float = struct.unpack("<f", struct.pack("<f", value))[0]
-    if not math.isfinite(number):
-        raise ValueError(f"{value} cannot be a parameter")
-    return number

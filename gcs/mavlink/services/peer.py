@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -15,7 +16,7 @@ from gcs.mavlink.settings import PeerSettings
 
 TIME_TOLERANCE = 1e-6  # s: sums of steps are not exact
 
-_TEXT_LIMIT = 50
+_TEXT_LIMIT, _TEXT_ID_MAX = 50, 0xFFFF
 _AUTOPILOT = px4.AUTOPILOT_COMPONENT
 _HEARTBEAT = _AUTOPILOT, mavlink.MAVLINK_MSG_ID_HEARTBEAT
 
@@ -32,12 +33,14 @@ _STAMP_LENGTH = 4
 class Stream:
     """One message that is sent again and again, at whole multiples of its interval, so that streams coincide."""
 
-    __slots__ = ("_last_stamp", "_of_one_sample", "due", "interval", "key", "repeats")
+    __slots__ = ("_last_stamp", "_of_one_sample", "_offset", "_waits", "due", "interval", "key", "repeats")
 
-    def __init__(self, component: int, message_id: int, interval: float) -> None:
-        """``interval`` in s; due at once."""
+    def __init__(self, component: int, message_id: int, interval: float, offset: float = 0.0) -> None:
+        """``interval`` in s; due at once, or with an ``offset`` (s) so long after the next multiple."""
         self.key = component, message_id
         self.interval = interval
+        self._offset = offset
+        self._waits = offset > 0.0
         self.due = -math.inf
         self.repeats = 0
         self._of_one_sample = message_id in _OF_ONE_SAMPLE
@@ -48,7 +51,11 @@ class Stream:
 
         They are due next at the next multiple of the interval; sooner while repetitions are due (interval in s).
         """
-        self.due = (math.floor((now + TIME_TOLERANCE) / self.interval) + 1) * self.interval
+        passed = math.floor((now + TIME_TOLERANCE - self._offset) / self.interval)
+        self.due = (passed + 1) * self.interval + self._offset
+        waits, self._waits = self._waits, False
+        if waits and not self.repeats:
+            return ()
         if self.repeats:
             self.repeats -= 1
             self.due = min(self.due, now + repeat_interval)
@@ -72,10 +79,12 @@ class Peer:
         intervals: Mapping[MessageKey, float],
         settings: PeerSettings,
         silent: int | None = None,
+        offsets: Mapping[MessageKey, float] = MappingProxyType({}),
     ) -> None:
         """``identities``: system and component of each who sends; ``intervals`` (s) of the streams in their order.
 
-        All streams start at once, those of the ``silent`` component only on request: another sends them there.
+        All streams start at once, or with their ``offsets`` (s); those of the ``silent`` component only on request:
+        another sends them there.
         """
         self.address = address
         self.heard_at = -math.inf
@@ -91,7 +100,17 @@ class Peer:
         self._codecs = {component: Codec(system, component) for system, component in identities}
         self._replies: list[bytes] = []
         self._defaults = intervals
-        self._streams = [Stream(*key, interval) for key, interval in intervals.items() if key[0] != silent]
+        self._offsets = offsets
+        self._streams = [self._new(key, interval) for key, interval in intervals.items() if key[0] != silent]
+        self._text_id = 0
+
+    def _new(self, key: MessageKey, interval: float) -> Stream:
+        return Stream(*key, interval, self._offsets.get(key, 0.0) if interval == self._defaults.get(key) else 0.0)
+
+    def interval(self, message_id: int, component: int = _AUTOPILOT) -> float:
+        """Return the interval (s) of a message on this link; infinity: it is not streamed."""
+        intervals = (stream.interval for stream in self._streams if stream.key == (component, message_id))
+        return next(intervals, math.inf)
 
     def hear(self, size: int, *, addressed: bool) -> None:
         """Take that ``size`` bytes have come; ``addressed``: some of them to this aircraft by a system id.
@@ -109,7 +128,7 @@ class Peer:
             interval = self._defaults.get(key, math.inf)
         self._streams = [stream for stream in self._streams if stream.key != key]
         if math.isfinite(interval):
-            self._streams.append(Stream(*key, interval))
+            self._streams.append(self._new(key, interval))
         self.next_due = -math.inf
 
     def repeat(self, *message_ids: int, component: int = _AUTOPILOT) -> None:
@@ -129,12 +148,16 @@ class Peer:
             self._replies += [self._codecs[component].frame(message) for message in messages]
             self.next_due = -math.inf
 
-    def send_statustext(self, text: str) -> None:
-        """Send a warning to the operator as STATUSTEXT, in pieces of its length."""
+    def send_statustext(self, text: str, severity: int = mavlink.MAV_SEVERITY_WARNING) -> None:
+        """Send a text to the operator as STATUSTEXT, a long one in chunks, of which the last has room left."""
         data = text.encode("ascii", "replace")
-        for start in range(0, len(data), _TEXT_LIMIT):
-            piece = data[start : start + _TEXT_LIMIT]
-            self.reply(mavlink.MAVLink_statustext_message(mavlink.MAV_SEVERITY_WARNING, piece))
+        if len(data) <= _TEXT_LIMIT:
+            self.reply(mavlink.MAVLink_statustext_message(severity, data))
+            return
+        self._text_id = self._text_id % _TEXT_ID_MAX + 1
+        for number, start in enumerate(range(0, len(data) + 1, _TEXT_LIMIT)):
+            chunk = data[start : start + _TEXT_LIMIT]
+            self.reply(mavlink.MAVLink_statustext_message(severity, chunk, self._text_id, number))
 
     def datagrams(self, sample: Sample, now: float) -> list[bytes]:
         """Return replies and what is due of ``sample``, in as few datagrams as possible."""

@@ -1,58 +1,107 @@
 """Requests of one message or of its stream."""
 
 import math
+from collections.abc import Callable, Mapping
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.mavlink.layout import LAYOUTS
 from gcs.mavlink.services.aircraft import Control, MessageSource
-from gcs.mavlink.services.answer import ACCEPTED, UNSUPPORTED, Answer, denied
+from gcs.mavlink.services.answer import ACCEPTED, UNSUPPORTED, Answer, denied, rejected_for_now
 from gcs.mavlink.services.dispatcher import Command, Request
 from gcs.mavlink.settings import PeerSettings
 
+_STOPPED, _NOT_AVAILABLE = -1, 0
+"""Intervals in MESSAGE_INTERVAL (us)."""
+_INTERVAL_MAX = 3600.0  # s
+
 
 class StreamRequests:
-    """MAV_CMD_REQUEST_MESSAGE and MAV_CMD_SET_MESSAGE_INTERVAL for the messages of one component."""
+    """Commands about the messages of one component; ``handlers`` by MAV_CMD. What is accepted is sent."""
 
     def __init__(self, component: int, source: MessageSource, control: Control, settings: PeerSettings) -> None:
         self._component = component
-        self._builders = source.builders
+        self._source = source
         self._control = control
         self._interval_min = settings.interval_min
+        self._special: dict[int, Callable[[Command, Request], Answer]] = {}
+        self.handlers: Mapping[int, Callable[[Command, Request], Answer]] = {
+            mavlink.MAV_CMD_REQUEST_MESSAGE: self._request_message,
+            mavlink.MAV_CMD_SET_MESSAGE_INTERVAL: self._set_message_interval,
+            mavlink.MAV_CMD_GET_MESSAGE_INTERVAL: self._get_message_interval,
+        }
 
-    def request_message(self, message: Command, request: Request) -> Answer:
-        """Send a message once."""
-        wanted = self._wanted(message)
-        if wanted is None:
+    def answer_with(self, message_id: int, send: Callable[[Command, Request], Answer]) -> None:
+        """Let ``send`` answer requests of a message that is not streamed, because they have parameters."""
+        self._special[message_id] = send
+
+    def sending(self, message_id: int) -> Callable[[Command, Request], Answer]:
+        """Return what answers an older command that requests one message."""
+        name = LAYOUTS[message_id].kind.msgname
+
+        def send(message: Command, request: Request) -> Answer:
+            return self._send(message_id, request)
+
+        send.__doc__ = f"Send {name} once."
+        return send
+
+    def _request_message(self, message: Command, request: Request) -> Answer:
+        """Send a message (param1) once."""
+        wanted = whole(message.param1, 1 << 24)
+        if wanted in self._special:
+            return self._special[wanted](message, request)
+        return UNSUPPORTED if wanted is None else self._send(wanted, request)
+
+    def _send(self, wanted: int, request: Request) -> Answer:
+        key = self._component, wanted
+        if key not in self._source.builders:
             return UNSUPPORTED
-        built = self._builders[self._component, wanted](request.now)
+        built = self._source.builders[key](request.now)
         if not built:
-            return Answer(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
+            return rejected_for_now(f"Message {wanted} denied: {self._source.absence(key) or 'no data of it now'}")
         request.peer.reply_packed(*built, component=self._component)
         return ACCEPTED
 
-    def set_message_interval(self, message: Command, request: Request) -> Answer:
-        """Start, stop or restore the stream of a message on the sender's link."""
+    def _set_message_interval(self, message: Command, request: Request) -> Answer:
+        """Start (param2 us), stop (-1) or restore (0) the stream of a message (param1) on the sender's link."""
         wanted = self._wanted(message)
         if wanted is None:
             return UNSUPPORTED
         if self._control.is_stranger_at_its_address(request.sender, request.now):
             return denied("Interval denied: another ground station flies by this link")
         microseconds = message.param2
-        if microseconds == -1.0:
+        if microseconds == _STOPPED:
             interval = math.inf
         elif microseconds == 0.0:
             interval = 0.0
-        elif self._interval_min * 1e6 <= microseconds <= 3.6e9:
+        elif self._interval_min * 1e6 <= microseconds <= _INTERVAL_MAX * 1e6:
             interval = microseconds * 1e-6
         else:
-            return denied("")
+            return denied(
+                f"Interval denied: {microseconds:g} us is not within {self._interval_min:g} to {_INTERVAL_MAX:g} s", 2
+            )
+        reason = self._source.absence((self._component, wanted))
+        if reason is not None and 0.0 < interval < math.inf:
+            return denied(f"Interval denied: {reason}", 1)
         request.peer.set_interval(wanted, interval, self._component)
+        return ACCEPTED
+
+    def _get_message_interval(self, message: Command, request: Request) -> Answer:
+        """Send MESSAGE_INTERVAL of a message (param1) on the sender's link."""
+        number = whole(message.param1, 1 << 16)
+        if number is None:
+            return denied(f"Interval denied: {message.param1:g} is no message", 1)
+        interval = request.peer.interval(number, self._component)
+        microseconds = _STOPPED if math.isinf(interval) else round(interval * 1e6)
+        if (self._component, number) not in self._source.builders:
+            microseconds = _NOT_AVAILABLE
+        request.peer.reply(mavlink.MAVLink_message_interval_message(number, microseconds), component=self._component)
         return ACCEPTED
 
     def _wanted(self, message: Command) -> int | None:
         """Return the message id that a command names; None: there is no such message."""
         wanted = whole(message.param1, 1 << 24)
-        return wanted if (self._component, wanted) in self._builders else None
+        return wanted if (self._component, wanted) in self._source.builders else None
 
 
 def whole(value: float, limit: int = 256) -> int | None:

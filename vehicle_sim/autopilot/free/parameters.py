@@ -1,7 +1,7 @@
 """Parameters of a free vehicle beside those of any: PX4's names, defaults and ranges."""
 
 from gcs.mavlink import px4
-from gcs.mavlink.services.parameters import INTEGER, Parameter
+from gcs.mavlink.services.parameter_table import INTEGER, Parameter
 from vehicle_sim.autopilot.airframe import Airframe
 
 CRUISE_SPEED = "MPC_XY_CRUISE"  #: m/s, horizontal, flown by itself

@@ -1,0 +1,144 @@
+"""Commands that an aircraft flies: arming, take-off, go-to, speed, missions, return, landing."""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+
+from gcs.mavlink import px4
+from gcs.mavlink.layout import PackedRun
+from gcs.mavlink.services.aircraft import Aircraft, MessageSource, Reposition
+from gcs.mavlink.services.answer import ACCEPTED, UNSUPPORTED_FRAME, Answer, denied
+from gcs.mavlink.services.dispatcher import Command, Request
+from gcs.mavlink.services.streams import whole
+
+_HOME = px4.AUTOPILOT_COMPONENT, mavlink.MAVLINK_MSG_ID_HOME_POSITION
+_ABOVE_SEA = (mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_INT)
+_ABOVE_HOME = (mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT)
+_NOT_GIVEN = (0x7FFFFFFF, 0x7FF80000)
+"""Of a place in whole numbers: MAVLink's, and what some clients make of NaN."""
+
+_AIRSPEED, _GROUND_SPEED = 0, 1
+_UNCHANGED = -1.0
+_PAUSE, _CONTINUE = 0.0, 1.0
+_ITEMS_MAX = 1 << 16
+
+
+class _Place(NamedTuple):
+    """Latitude and longitude (deg), altitude (m above mean sea level); NaN: not given."""
+
+    latitude: float
+    longitude: float
+    altitude: float
+
+
+class FlightCommands:
+    """What each command asks the aircraft to do; ``handlers`` by MAV_CMD."""
+
+    def __init__(self, aircraft: Aircraft, source: MessageSource) -> None:
+        """``source`` tells where home is."""
+        self._aircraft = aircraft
+        self._source = source
+        self.handlers: Mapping[int, Callable[[Command, Request], Answer]] = {
+            mavlink.MAV_CMD_COMPONENT_ARM_DISARM: self._arm_disarm,
+            mavlink.MAV_CMD_DO_FLIGHTTERMINATION: self._terminate,
+            mavlink.MAV_CMD_NAV_TAKEOFF: self._take_off,
+            mavlink.MAV_CMD_NAV_LAND: self._entering(px4.MODE_LAND),
+            mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: self._entering(px4.MODE_RETURN),
+            mavlink.MAV_CMD_DO_REPOSITION: self._reposition,
+            mavlink.MAV_CMD_DO_CHANGE_SPEED: self._change_speed,
+            mavlink.MAV_CMD_MISSION_START: self._start_mission,
+            mavlink.MAV_CMD_DO_PAUSE_CONTINUE: self._pause_continue,
+        }
+
+    def _arm_disarm(self, message: Command, request: Request) -> Answer:
+        """Arm (param1 1) or disarm (0); param2 21196 skips checks."""
+        force = message.param2 == px4.FORCE_ARM_DISARM
+        if message.param1 == 1.0:
+            return self._aircraft.arm(request.now, force)
+        if message.param1 == 0.0:
+            return self._aircraft.disarm(request.now, force)
+        return denied(f"Arming denied: param1 {message.param1} is neither 0 nor 1", 1)
+
+    def _terminate(self, message: Command, request: Request) -> Answer:
+        """Stop the rotors at once, in the air, too (param1 1); 0 does nothing."""
+        if message.param1 == 1.0:
+            return self._aircraft.disarm(request.now, True)
+        return ACCEPTED if message.param1 == 0.0 else denied(f"Termination denied: param1 {message.param1:g}", 1)
+
+    def _take_off(self, message: Command, request: Request) -> Answer:
+        """Take off to an altitude (NaN: MIS_TAKEOFF_ALT above the ground)."""
+        place = self._place(message, request)
+        if place is None:
+            return UNSUPPORTED_FRAME
+        return self._aircraft.take_off(place.altitude, request.now)
+
+    def _reposition(self, message: Command, request: Request) -> Answer:
+        """Fly to a place and hold there; speed (param1), yaw (param4, rad)."""
+        place = self._place(message, request)
+        if place is None:
+            return UNSUPPORTED_FRAME
+        for value, limit, parameter in ((place.latitude, 90.0, 5), (place.longitude, 180.0, 6)):
+            if abs(value) > limit:
+                return denied(f"Reposition denied: {value:g} deg is no place", parameter)
+        if math.isinf(place.altitude):
+            return denied("Reposition denied: the altitude is infinite", 7)
+        speed = message.param1 if message.param1 > 0.0 else math.nan
+        return self._aircraft.reposition(Reposition(*place, message.param4, speed), request.now)
+
+    def _change_speed(self, message: Command, request: Request) -> Answer:
+        """Fly with another speed over the ground (param2; -1: as it is)."""
+        if message.param1 not in (_AIRSPEED, _GROUND_SPEED):
+            return denied("Speed denied: only that over the ground can be changed", 1)
+        if message.param2 == _UNCHANGED:
+            return ACCEPTED
+        if not 0.0 < message.param2 < math.inf:
+            return denied(f"Speed denied: {message.param2:g} m/s is none", 2)
+        return self._aircraft.change_speed(message.param2, request.now)
+
+    def _start_mission(self, message: Command, request: Request) -> Answer:
+        """Fly the mission from an item (param1) to its end."""
+        first = 0 if math.isnan(message.param1) else whole(message.param1, _ITEMS_MAX)
+        if first is None:
+            return denied(f"Mission denied: {message.param1:g} is no item", 1)
+        return self._aircraft.start_mission(first, request.now)
+
+    def _pause_continue(self, message: Command, request: Request) -> Answer:
+        """Hold (param1 0), or go on with the mission (1)."""
+        if message.param1 == _PAUSE:
+            return self._aircraft.pause(request.now)
+        if message.param1 == _CONTINUE:
+            return self._aircraft.resume(request.now)
+        return denied(f"Pause denied: param1 {message.param1:g} is neither 0 nor 1", 1)
+
+    def _entering(self, mode: int) -> Callable[[Command, Request], Answer]:
+        """Return what carries out a command that enters a mode."""
+
+        def enter(message: Command, request: Request) -> Answer:
+            return self._aircraft.enter_mode(mode, request.sender, request.now)
+
+        enter.__doc__ = f"Enter {px4.mode_name(mode)}."
+        return enter
+
+    def _place(self, message: Command, request: Request) -> _Place | None:
+        """Return the place in a command, None for a MAV_FRAME that is not global."""
+        if isinstance(message, mavlink.MAVLink_command_long_message):
+            return _Place(message.param5, message.param6, message.param7)
+        if message.frame in _ABOVE_SEA:
+            base = 0.0
+        elif message.frame in _ABOVE_HOME:
+            base = self._home_altitude(request.now)
+        else:
+            return None
+        latitude, longitude = (math.nan if x in _NOT_GIVEN else x * 1e-7 for x in (message.x, message.y))
+        return _Place(latitude, longitude, base + message.z)
+
+    def _home_altitude(self, now: float) -> float:
+        """Return the altitude of home (m above mean sea level), as HOME_POSITION tells it; NaN: there is none yet."""
+        built = self._source.builders[_HOME](now)
+        if isinstance(built, PackedRun) or not built:
+            return math.nan
+        layout, payload = built[0]
+        home: Any = layout.message(payload)
+        return float(home.altitude) * 1e-3
