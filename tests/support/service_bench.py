@@ -93,6 +93,7 @@ class ServiceBench:
         settings = PeerSettings()
         self.intervals = {(COMPONENT, mavlink.MAVLINK_MSG_ID_HEARTBEAT): 1.0}
         self.peer = Peer(SENDER, [(SYSTEM, COMPONENT)], self.intervals, settings)
+        self.peer.answered = True
         streams = StreamRequests(COMPONENT, self, self, settings)
         self.dispatcher = Dispatcher()
         CommandServer(self.aircraft, self, self, streams, self.parameters).register(self.dispatcher)

@@ -65,13 +65,14 @@ class Vehicle:
         autopilot: AutopilotSettings = AutopilotSettings(),
         link: VehicleLinkSettings = VehicleLinkSettings(),
         arrays: OnboardArrays | None = None,
+        plans: MissionStore | None = None,
         free: bool = False,
     ) -> None:
         """``system_id`` 1 .. 255; rates in Hz; ``boot_time`` (s) is the zero of every ``time_boot_ms``.
 
         ``clients``: ports of clients, and whether the payload unit's messages go there, too.
         ``clock`` is what its clock shows at a time; ``arrays`` as in :class:`.Autopilot`; ``free``: it has no payload,
-        and flies by itself.
+        and flies by itself. ``plans``: its mission, fence and rally points, if not those of its kind.
         """
         intervals = default_intervals(link.intervals, 1.0 / telemetry_rate)
         if free:
@@ -87,8 +88,8 @@ class Vehicle:
             (px4.PAYLOAD_UNIT_SYSTEM, px4.PAYLOAD_UNIT_COMPONENT),
         )
         self._own = own, payload_unit
-        self._systems = own[0], payload_unit[0]
         """System and component of all that it sends."""
+        self._systems = own[0], payload_unit[0]
         self._peers = Peers(
             lambda address, with_payload: Peer(
                 address,
@@ -114,16 +115,15 @@ class Vehicle:
                 mavlink.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
                 | mavlink.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
             )
-            plans: MissionStore = MissionPlans(home, self.aircraft)
+            plans = plans or MissionPlans(home, self.aircraft)
         else:
-            plans = CoupledPlans()
             self._setpoints = SetpointServer(self.autopilot, owner, clock)
             self.aircraft = CoupledAircraft(self.autopilot, owner)
         self._dispatcher = Dispatcher()
         # A further protocol registers its messages here.
         self._setpoints.register(self._dispatcher)
         LinkServices(clock).register(self._dispatcher)
-        self._missions = MissionServer(system_id, plans, owner, self._peers, link.missions)
+        self._missions = MissionServer(system_id, plans or CoupledPlans(), owner, self._peers, link.missions)
         self._missions.register(self._dispatcher)
         self.telemetry.builders.update(self._missions.builders)
         streams, of_payload_unit = (
