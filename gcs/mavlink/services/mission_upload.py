@@ -129,6 +129,11 @@ class MissionUpload:
         elif message.seq == transfer.expected:  # else it came twice, or was overtaken: the next request is on its way
             self._append(transfer, message, request.now)
 
+    def refuse(self, message: ItemMessage, request: Request, answer: MissionAnswer) -> None:
+        """Refuse an item, and with it the upload that it is part of."""
+        self.cancel(request)
+        send_answer(request, message.mission_type, answer)
+
     def on_ack(self, message: mavlink.MAVLink_mission_ack_message, request: Request) -> None:
         """End an upload that its ground cancels; where it knows one kind of items only, request the other."""
         transfer = self._transfer

@@ -17,7 +17,7 @@ from gcs.mavlink.services.answer import Answer, denied
 from gcs.mavlink.services.dispatcher import Command, Dispatcher, Request
 from gcs.mavlink.services.mission_download import MissionDownload
 from gcs.mavlink.services.mission_item import PlanType
-from gcs.mavlink.services.mission_messages import current
+from gcs.mavlink.services.mission_messages import ItemMessage, current
 from gcs.mavlink.services.mission_store import TAKEN, MissionAnswer, MissionStore
 from gcs.mavlink.services.mission_upload import Kept, MissionUpload, send_answer
 from gcs.mavlink.services.peers import Peers
@@ -64,8 +64,8 @@ class MissionServer:
         self._take(dispatcher, m.MAVLink_mission_request_partial_list_message, self._on_request_partial_list)
         self._take(dispatcher, m.MAVLink_mission_count_message, self._on_count)
         self._take(dispatcher, m.MAVLink_mission_write_partial_list_message, self._on_write_partial_list)
-        self._take(dispatcher, m.MAVLink_mission_item_int_message, self._upload.take)
-        self._take(dispatcher, m.MAVLink_mission_item_message, self._upload.take)
+        self._take(dispatcher, m.MAVLink_mission_item_int_message, self._on_item)
+        self._take(dispatcher, m.MAVLink_mission_item_message, self._on_item)
         self._take(dispatcher, m.MAVLink_mission_ack_message, self._on_ack)
         self._take(dispatcher, m.MAVLink_mission_clear_all_message, self._on_clear_all)
         self._take(dispatcher, m.MAVLink_mission_set_current_message, self._on_set_current)
@@ -122,6 +122,12 @@ class MissionServer:
             send_answer(request, plan_type, MissionAnswer(mavlink.MAV_MISSION_INVALID_SEQUENCE, text))
         else:
             self._upload.begin(request, plan_type, last + 1 - first, Kept(items[:first], items[last + 1 :]))
+
+    def _on_item(self, message: ItemMessage, request: Request) -> None:
+        if self._control.is_stranger(request.sender, request.now):  # another took control since the upload began
+            self._upload.refuse(message, request, _STRANGER)
+        else:
+            self._upload.take(message, request)
 
     def _on_ack(self, message: mavlink.MAVLink_mission_ack_message, request: Request) -> None:
         self._download.on_ack(message.mission_type, request)
