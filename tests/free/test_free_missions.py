@@ -98,7 +98,7 @@ def test_paused_mission_goes_on_with_its_item():
         assert bench.mode_of() == "AUTO.LOITER" and reached == [0] and aircraft.current_item == 1
         assert bench.position()[0] < 25.0
         assert aircraft.resume(bench.now).result == 0
-        bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3))
+        bench.send(mavlink.MAVLink_mission_ack_message(1, 1, 0))  # it listens, after a long silence
         assert bench.run(15.0, lambda: aircraft.mission_finished)
         assert reached == [0, 1]
         bench.run(5.0)

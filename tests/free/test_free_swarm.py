@@ -6,7 +6,6 @@ import numpy as np
 import pymavlink.dialects.v20.common as mavlink
 import pytest
 from free_bench import GROUND, FreeBench, config_of, item, mode
-from idc_controller.geometry.box import Wall
 
 from gcs.errors import UnusableInput
 from gcs.mavlink import px4
@@ -14,6 +13,7 @@ from gcs.mission.model import Fault, Obstacle
 from gcs.record.reader import read_table
 from gcs.record.run_data import read_run
 from gcs.record.tables import truth_columns
+from idc_controller.geometry.shapes import Wall
 from vehicle_sim.faults.fault_injector import FaultInjector
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.free_world import FreeWorld
@@ -153,7 +153,9 @@ def test_faults_of_a_vehicle_act():
 def test_each_vehicle_is_answered_alone():
     with FreeBench(3) as bench:
         bench.run(0.2)
-        bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3), vehicle=2)
+        for _ in range(2):  # the second shows that it gets what is sent to it
+            bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3), vehicle=2)
+            bench.run(0.5)
         bench.messages.clear()
         bench.run(1.5)
         assert {i for _, i, _ in bench.messages} == {2}

@@ -32,7 +32,7 @@ from vehicle_bench import GROUND
 
 from gcs.mavlink.services.mission_item import UNKNOWN, PlanType
 from gcs.mission import px4_items
-from gcs.mission.commands import LEFT_OUT, Command, Frame
+from gcs.mission.commands import LEFT_OUT, Command, Frame, command_name
 from gcs.mission.items import ItemError
 from gcs.mission.items import MissionItem as FileItem
 
@@ -153,7 +153,7 @@ def is_taken(frame: int, number: int) -> bool:
     return True
 
 
-LEFT_OUT_NUMBERS = {name: number for number, name in LEFT_OUT.items()}
+LEFT_OUT_NUMBERS = {command_name(number): number for number in LEFT_OUT}
 
 TAKEN = [
     *(waypoint(frame=frame) for frame in (0, 3, 5, 6)),

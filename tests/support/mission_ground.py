@@ -82,6 +82,10 @@ class Uploader:
         self.due = 0.0
         self._last: Any = m.MAVLink_mission_count_message(1, 1, len(self.items), plan_type)
 
+    @property
+    def is_done(self) -> bool:
+        return self.result is not None
+
     def start(self, now: float) -> list[Any]:
         self.due = now + RETRY
         return [self._last]

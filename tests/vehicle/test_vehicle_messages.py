@@ -21,7 +21,11 @@ NO_POINTS = np.empty((0, 3))
 OWN = px4.AUTOPILOT_COMPONENT
 HAVE_DATA = sorted(
     {number for component, number in Bench().vehicle.telemetry.builders if component == OWN}
-    - {mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D}
+    - {
+        mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED,
+        mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D,
+        mavlink.MAVLINK_MSG_ID_MISSION_ITEM_REACHED,
+    }
 )
 """Messages of which a vehicle on the ground that has just scanned has data."""
 

@@ -146,7 +146,7 @@ class MissionServer:
             answer = self._store.set_current(message.seq, request.now)
         if answer.text:
             request.peer.send_statustext(answer.text)
-        request.peer.reply_packed(self._current())  # the answer, be it the old one
+        request.peer.reply_packed(*self._current(request.now))  # the answer, be it the old one
 
     def do_set_mission_current(self, message: Command, request: Request) -> Answer:
         """Carry out MAV_CMD_DO_SET_MISSION_CURRENT, whose first parameter -1 stands for the current item."""
@@ -183,7 +183,7 @@ class MissionServer:
         """What builds MISSION_CURRENT and MISSION_ITEM_REACHED."""
         component = px4.AUTOPILOT_COMPONENT
         return {
-            (component, mavlink.MAVLINK_MSG_ID_MISSION_CURRENT): lambda now: (self._current(),),
+            (component, mavlink.MAVLINK_MSG_ID_MISSION_CURRENT): self._current,
             (component, mavlink.MAVLINK_MSG_ID_MISSION_ITEM_REACHED): self._reached_again,
         }
 
@@ -202,11 +202,13 @@ class MissionServer:
                 for peer in self._peers:
                     peer.reply(mavlink.MAVLink_mission_item_reached_message(number))
 
-    def _current(self) -> Packed:
+    def _current(self, now: float) -> tuple[Packed, ...]:
+        """Item and state of the mission, and the ids of the plans."""
         mission, fence, rally = (self._store.id_of(plan_type) for plan_type in PlanType)
-        return current(self._store.progress(), (mission, fence, rally))
+        return (current(self._store.progress(), (mission, fence, rally)),)
 
     def _reached_again(self, now: float) -> Built:
+        """The item of the mission that was reached last, some times."""
         number = self._store.reached_again()
         return () if number is None else packed(mavlink.MAVLink_mission_item_reached_message(number))
 
