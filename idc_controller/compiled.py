@@ -21,7 +21,6 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 _CONFIG: Any = numba_config
 
 _OPTIONS: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True}
-_INLINED: dict[str, Any] = {**_OPTIONS, "no_cpython_wrapper": True}
 _NUMBERS = {float: types.float64, int: types.int64, bool: types.boolean, type(None): types.none}
 
 
@@ -60,8 +59,8 @@ def _type_of(hint: Any) -> Any:
 
 
 def inlined(function: Function) -> Function:
-    """Compile a small function as a part of the kernels that call it; Python cannot call it."""
-    return cast(Function, numba.njit(**_INLINED)(function))
+    """Compile a small function as a part of the kernels that call it."""
+    return cast(Function, numba.njit(**_OPTIONS)(function))
 
 
 class _ByContent(_CacheLocator):
@@ -123,7 +122,7 @@ def _checksum(function: Callable[..., Any]) -> str:
     parts = (
         *_parts(function.__code__, function.__globals__),
         *_parts_of_value(bound, ()),
-        repr(_INLINED),
+        repr(_OPTIONS),
         numba.__version__,
     )
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()

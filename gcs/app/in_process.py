@@ -62,11 +62,14 @@ class FlightInProcess:
         run_dir: Path,
         *,
         controller: str = "idc",
+        world: RecordedWorld | None = None,
+        addresses: Sequence[Address | None] | None = None,
         start_epoch: float = 0.0,
     ) -> None:
-        """Open the world, and the records in ``run_dir``, which must exist.
+        """Open the world, unless one is given, and the records in ``run_dir``, which must exist.
 
-        ``start_epoch``: seconds since 1970 at time 0, for the telemetry log.
+        ``addresses``: of the vehicles, as the ground station is given them; None: the true ones. ``start_epoch``:
+        seconds since 1970 at time 0, for the telemetry log.
         """
         self.mission, self.run_dir = mission, run_dir
         self.setpoints = SentSetpoints()
@@ -76,11 +79,11 @@ class FlightInProcess:
         self._closed = False
         gc.collect()  # of flights before: their cycles hold large arrays
         with ExitStack() as opened:
-            self.world = open_world(mission, run_dir)
+            self.world = open_world(mission, run_dir) if world is None else world
             opened.callback(self.world.close)
             self.recorder = FlightRecorder(run_dir, start_epoch)
             opened.callback(self.recorder.close)
-            station = ground_station(mission, self.world.addresses, self.recorder, controller)
+            station = ground_station(mission, addresses or self.world.addresses, self.recorder, controller)
             self.lockstep = InProcessLockstep(self.world, station)
             self._closing = opened.pop_all()
 

@@ -53,6 +53,7 @@ class Ahead(Disturbances):
     """No fault, but the clocks of all vehicles are ahead of the world's by as many seconds."""
 
     def __init__(self, seconds):
+        super().__init__()
         self.seconds = seconds
 
     def clock_of(self, vehicle):

@@ -181,7 +181,7 @@ def _announce(sockets: SwarmSockets, options: Namespace) -> None:
         addresses = "" if default else "".join(f" {url(endpoint)}" for endpoint in sockets.vehicles)
         hint = f"gcs fly MISSION --realtime --connect{addresses}"
         if options.free:
-            hint = "no payload: for MAVLink clients at 14540 and on, and 14550"
+            hint = "no payload: for MAVLink clients, see docs/clients.md"
         if options.lockstep:
             hint = "lockstep: waiting for a ground station at the clock"
         print(f"({hint}; Ctrl-C ends)", flush=True)
