@@ -37,7 +37,7 @@ class FlightCommands:
     """What each command asks the aircraft to do; ``handlers`` by MAV_CMD."""
 
     def __init__(self, aircraft: Aircraft, source: MessageSource) -> None:
-        """``source`` tells where home is."""
+        """``source`` has the place of home."""
         self._aircraft = aircraft
         self._source = source
         self.handlers: Mapping[int, Callable[[Command, Request], Answer]] = {
@@ -135,7 +135,7 @@ class FlightCommands:
         return _Place(latitude, longitude, base + message.z)
 
     def _home_altitude(self, now: float) -> float:
-        """Return the altitude of home (m above mean sea level), as HOME_POSITION tells it; NaN: there is none yet."""
+        """Return the altitude of home (m above mean sea level), as HOME_POSITION has it; NaN: there is none yet."""
         built = self._source.builders[_HOME](now)
         if isinstance(built, PackedRun) or not built:
             return math.nan

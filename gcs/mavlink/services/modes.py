@@ -1,4 +1,4 @@
-"""Modes: entered on command, and told in PX4's way, by AVAILABLE_MODES."""
+"""Modes: entered on command, and reported by AVAILABLE_MODES and CURRENT_MODE as by PX4."""
 
 import math
 from collections.abc import Callable, Mapping

@@ -15,7 +15,7 @@ from gcs.mavlink.services.peer import Peer
 
 _VALUE = LAYOUTS[mavlink.MAVLINK_MSG_ID_PARAM_VALUE]
 _HASH = "_HASH_CHECK"
-"""By this name PX4 tells the hash of all parameters, so that a ground may use those that it has kept."""
+"""By this name PX4 reports the hash of all parameters, so that a ground may use those that it has kept."""
 _NO_INDEX = 0xFFFF
 _HASH_SIZE = 4
 
@@ -24,7 +24,7 @@ class ParameterServer:
     """PARAM_REQUEST_READ, PARAM_REQUEST_LIST and PARAM_SET.
 
     A refusal is a PARAM_ERROR; of a PARAM_SET the value that is kept follows, for grounds that do not know PARAM_ERROR.
-    A value that was set is told to all peers.
+    A value that was set is sent to all peers.
     """
 
     def __init__(self, table: ParameterTable, control: Control, peers: Iterable[Peer] = ()) -> None:
