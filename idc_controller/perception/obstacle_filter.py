@@ -12,7 +12,7 @@ from idc_controller.geometry.shape import Shape
 from idc_controller.geometry.shapes import Wall
 from idc_controller.perception.manoeuvre import ManoeuvreDetector
 from idc_controller.perception.motion_imm import MotionImm, MotionModels
-from idc_controller.perception.seen_points_kernels import outermost, remembered
+from idc_controller.perception.seen_points_kernels import distances_outside, remembered
 from idc_controller.perception.settings import ObstacleFilterSettings, SurfaceSettings
 from idc_controller.perception.surfaces.flat import FlatSurface
 from idc_controller.perception.surfaces.points import Fit, KnownSurface, SurfacePoints
@@ -157,14 +157,17 @@ class ObstacleFilter:
     def _remember(self, points: SurfacePoints) -> None:
         """Remember the points of a frame, and how far the outermost of the last ones lies outside, beyond their noise.
 
-        The body is never less than what was seen of it, however well the shape fits each frame.
+        The body is never less than what was seen of it, however well the shape fits each frame. As many points as there
+        are false ones among them are left out.
         """
         s, time = self.settings, points.time
         self._seen = remembered(
             self._seen, time - s.seen_memory, time, np.ascontiguousarray(points.points), self._imm.state[0].copy(),
             points.pose_variance, points.noise**2, points.scatter, s.outermost_sigmas,
         )  # fmt: skip
-        self._uncovered = outermost(self._seen, self.shape.row[None], self._surface.offset, s.false_share)
+        outside = distances_outside(self._seen, self.shape.row[None], self._surface.offset)
+        last = len(outside) - 1 - math.ceil(s.false_share * len(outside))
+        self._uncovered = max(float(np.partition(outside, last)[last]), 0.0) if last >= 0 else 0.0
 
     def _compare_predictions(self) -> None:
         """Compare an earlier prediction with the state now, and predict anew."""

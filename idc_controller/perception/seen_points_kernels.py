@@ -53,23 +53,16 @@ def remembered(
 
 
 @kernel
-def outermost(seen: Array2, body: Array2, centre: Array1, false_share: float) -> float:
-    """Return how far the outermost of the points ``seen`` (n, 5) lies outside of a body, 0 if none does (m).
-
-    As many as there are false ones among them are left out: a share ``false_share``, rounded up.
+def distances_outside(seen: Array2, body: Array2, centre: Array1) -> Array1:
+    """Return how far each of the points ``seen`` (n, 5) lies outside of a body, beyond its noise (n,) (m).
 
     Args:
         seen: rows.
         body: see :mod:`idc_controller.geometry.distance_kernels` (1, 14).
         centre: of the body, relative to its reference point (3,).
-        false_share: of the points.
     """
-    n = seen.shape[0]
-    false = math.ceil(false_share * n)
-    if n <= false:
-        return 0.0
-    outside = np.empty(n)
-    for i in range(n):
+    outside = np.empty(seen.shape[0])
+    for i in range(seen.shape[0]):
         x, y, z = seen[i, 1] - centre[0], seen[i, 2] - centre[1], seen[i, 3] - centre[2]
         outside[i] = distance_to(body, 0, x, y, z) - seen[i, 4]
-    return max(float(np.partition(outside, n - 1 - false)[n - 1 - false]), 0.0)
+    return outside
