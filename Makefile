@@ -38,7 +38,7 @@ help:
 	@echo "make benchmark-check  compare the CPU cost of flights with that of the commit BASE ($(BASE))"
 	@echo "make benchmark-campaign  throughput of parallel flights against a single one's"
 	@echo "make benchmark-view   CPU cost of a flight with its live view against that without"
-	@echo "make docs         write docs/settings.md, failsafes.md, services.md and NOTICE from what they are about"
+	@echo "make docs         write docs/settings.md, failsafes.md, autopilots.md, services.md and NOTICE from what they are about"
 	@echo "make pictures     fly, film and photograph the pictures of README.md (needs Chromium; about 6 min of CPU)"
 	@echo "make page         bundle the scripts of the report page anew (needs node and npm)"
 	@echo "make install      only install, into $(VENV)"
@@ -114,6 +114,7 @@ benchmark-check: $(COMPILED)
 docs: $(INSTALLED)
 	$(VENV)/bin/python tests/pages/settings_page.py > docs/settings.md
 	$(VENV)/bin/python tests/pages/failsafes_page.py > docs/failsafes.md
+	$(VENV)/bin/python tests/pages/autopilots_page.py > docs/autopilots.md
 	$(VENV)/bin/python tests/pages/kinds_page.py docs/faults.md
 	$(VENV)/bin/python -m vehicle_sim.mavlink.services_page > docs/services.md
 	$(VENV)/bin/python tests/packaging/notice.py > NOTICE

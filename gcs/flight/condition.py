@@ -84,6 +84,8 @@ class System:
     settings: FailsafeSettings = DEFAULTS.failsafe
     kept_clearance: float = 0.6
     """What plans keep from obstacles (m): the margin, and the bound on the payload's deviation from its plan."""
+    control_interval: float = 0.05
+    """s; telemetry must not come less often."""
 
 
 class Moment(NamedTuple):

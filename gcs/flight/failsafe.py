@@ -10,11 +10,13 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from gcs.flight.alarms import AlarmCode, Severity
+from gcs.flight.autopilot_requirements import missing
 from gcs.flight.condition import Check, Condition, Moment, Reaction, System, Trigger
 from gcs.flight.phase import Phase
 from gcs.mavlink import px4
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.arrays import Array
+from idc_controller.estimation.measurements import PAYLOAD
 from idc_controller.geometry.formation import Formation
 from idc_controller.safety.separation import Obstruction, obstruction
 
@@ -99,6 +101,23 @@ def _misplaced(system: System, moment: Moment) -> Trigger | None:
             name = f"vehicle {system.team.links[i].system_id}"
             return Trigger(f"{name} stands {distance:.1f} m from its place over the payload (limit {limit:g} m)", (i,))
     return None
+
+
+def _autopilot_unfit(system: System, moment: Moment) -> Trigger | None:
+    preflight, links = system.preflight, system.team.links
+    if not preflight.is_settled(moment.time):
+        return None
+    for i, link in enumerate(links):
+        if lacking := missing(link, -math.inf, at_connect=False):
+            return Trigger(f"vehicle {link.system_id} has not sent {', '.join(lacking)}", (i,))
+    if (slow := preflight.slow_source(system.control_interval)) is None:
+        return None
+    source, interval = slow
+    name = "the payload unit" if source == PAYLOAD else f"vehicle {links[source].system_id}"
+    needed = f"a flight needs {1.0 / system.control_interval:g} Hz (rates.control)"
+    return Trigger(
+        f"{name} sends positions at {1.0 / interval:.3g} Hz; {needed}", () if source == PAYLOAD else (source,)
+    )
 
 
 def _link_unfit(system: System, moment: Moment) -> Trigger | None:
@@ -322,6 +341,9 @@ class Failsafe(AlarmCode):
         "a vehicle or the payload unit has sent no position within {connect_timeout:g} s")
     MISPLACED = (Check.PREFLIGHT, _misplaced, Reaction.REFUSE, "place it, or check its position",
         "a vehicle is more than {placement_tolerance} m from its place over the payload")
+    AUTOPILOT_UNFIT = (Check.PREFLIGHT, _autopilot_unfit, Reaction.REFUSE,
+        "see docs/autopilots.md; set its message intervals, or reduce `rates.control`",
+        "before arming, a vehicle does not answer TIMESYNC, or positions come less often than set-points are sent")
     LINK_UNFIT = (Check.PREFLIGHT, _link_unfit, Reaction.REFUSE, "reduce its message rates, or use a faster link",
         "before arming, datagrams of one vehicle usually take more than {latency_limit} s one way")
     OBSTRUCTED = (Check.PREFLIGHT, _obstructed, Reaction.REFUSE, "clear the pad",

@@ -39,6 +39,7 @@ class Flight:
         self.system = System(
             team, control.estimator, control.controller.guidance, payload, preflight, plan, ImpactMonitor(team.links),
             obstacle_map, settings.failsafe, mission.system.avoidance.margin + mission.system.safety.planner.tracking,
+            1.0 / mission.system.rates.control,
         )  # fmt: skip
         """The objects that the conditions of failsafes are evaluated on."""
         self.failsafes = FailsafeState(self.system, alarms)

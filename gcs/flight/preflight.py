@@ -5,25 +5,18 @@ import math
 import numpy as np
 
 from gcs.config.flight_settings import DEFAULTS, FlightSettings
+from gcs.flight.autopilot_requirements import PARAMETERS, missing
 from gcs.flight.team import Team
-from gcs.mavlink import px4
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import PAYLOAD, Measurement, Position
 
-NEEDED_PARAMETERS = (
-    px4.PARAM_THRUST_MAX,
-    px4.PARAM_ATTITUDE_KP,
-    px4.PARAM_ATTITUDE_KD,
-    px4.PARAM_MOTOR_LAG,
-    px4.PARAM_ONBOARD_RATE,
-    px4.PARAM_SETPOINT_LOSS,
-    px4.PARAM_LAND_DELAY,
-)
 _QUEUE_WAIT = 0.02
 """s for which datagrams usually wait, at least, on a link that is measured."""
 _MEASURED = 15
 """Datagrams by which its rate is measured."""
+_STAMP = 1e-3
+"""Resolution of the stamps of telemetry (s)."""
 
 
 class Preflight:
@@ -38,7 +31,11 @@ class Preflight:
         self.uptime = 0.0
         """Whole seconds for which the first vehicle had been up when the ground began: team time counts them."""
         self.missing = ""
-        """Vehicles that have not connected, else the data that the first incomplete one lacks; empty: none."""
+        """Vehicles that have not connected, else all that those which have lack of what a flight needs; empty: none."""
+        self._newest: dict[int, float] = {}
+        """Time (s, team) of the newest position of each source."""
+        self._intervals: dict[int, float] = {}
+        """Shortest interval of the positions of each source (s): what is lost makes others longer."""
         self._positions: dict[int, list[Array]] = {source: [] for source in (PAYLOAD, *range(len(team.links)))}
 
     def connect(self, now: float) -> bool:
@@ -47,26 +44,32 @@ class Preflight:
         if math.isnan(self.connect_start):
             self.connect_start = now
         timeout = self._settings.failsafe.telemetry_timeout
-        silent, incomplete = [], []
+        silent = []
+        incomplete: dict[str, list[int]] = {}
         for link in self._team.links:
-            link.requests.want_parameters(NEEDED_PARAMETERS)
+            link.requests.want_parameters(tuple(PARAMETERS))
             if now - link.received_at > timeout:
                 silent.append(f"vehicle {link.system_id} {_silence(link)}")
-            elif missing := _missing(link, now, timeout):
-                incomplete.append(f"vehicle {link.system_id} {missing}")
+            elif lacking := missing(link, now - timeout, at_connect=True):
+                incomplete.setdefault(", ".join(lacking), []).append(link.system_id)
                 if now - link.payload_received_at > timeout:
                     link.requests.want_payload_unit()
         if silent:
             team = len(self._team.links)
             self.missing = f"{team - len(silent)} of {team} vehicles connected: {'; '.join(silent)}"
         else:
-            self.missing = incomplete[0] if incomplete else ""
+            self.missing = "; ".join(f"{_vehicles(ids)} not sent {what}" for what, ids in incomplete.items())
         return not self.missing
 
     def add(self, measurement: Measurement) -> None:
         """Take telemetry of a vehicle or of the payload unit on the ground."""
         if isinstance(measurement, Position) and measurement.has_pose:
-            samples = self._positions[measurement.source]
+            source, time = measurement.source, measurement.time
+            interval = time - self._newest.get(source, math.nan)
+            if not interval <= 0.0:
+                self._newest[source] = time
+                self._intervals[source] = min(interval, self._intervals.get(source, math.inf))
+            samples = self._positions[source]
             samples.append(measurement.pose)
             del samples[: -self._settings.takeoff_landing.position_samples]
 
@@ -82,6 +85,16 @@ class Preflight:
         """Return whether datagrams of a vehicle wait for each other, as on a link that hardly carries them."""
         # A clock that drifts delays stamps, too, but no round trip.
         return min(link.clock.queue.wait, link.clock.round_trip_excess) > _QUEUE_WAIT
+
+    def slow_source(self, interval: float) -> tuple[int, float] | None:
+        """Return the first source whose positions come less often than once in ``interval`` (s), and its own interval.
+
+        The payload unit counts by the rate at which all vehicles together relay it.
+        """
+        for source, own in self._intervals.items():
+            if math.isfinite(own) and own > interval + _STAMP:
+                return source, own
+        return None
 
     @property
     def has_positions(self) -> bool:
@@ -107,12 +120,7 @@ def _silence(link: VehicleLink) -> str:
     return f"does not answer at {link.address[0]}:{link.address[1]}{other}"
 
 
-def _missing(link: VehicleLink, now: float, timeout: float) -> str:
-    """Return what a flight needs and a vehicle has not sent; empty: nothing. ``timeout`` (s) for telemetry."""
-    if now - link.complete_telemetry_received_at > timeout:
-        return "sends no attitude and position"
-    if now - link.payload_received_at > timeout:
-        return "relays no payload navigation data"
-    if absent := [name for name in NEEDED_PARAMETERS if name not in link.status.parameters]:
-        return "does not send " + ", ".join(absent)
-    return "has not reported whether it is ready" if link.status.prearm_ok is None else ""
+def _vehicles(system_ids: list[int]) -> str:
+    """Return the vehicles of a sentence, with its verb."""
+    names = ", ".join(map(str, system_ids))
+    return f"vehicle {names} has" if len(system_ids) == 1 else f"vehicles {names} have"

@@ -49,6 +49,8 @@ _NOT_READ = frozenset(
 class VehicleStatus:
     """Status that a vehicle has last reported."""
 
+    autopilot: int | None = None
+    """MAV_AUTOPILOT of its heartbeats; None: none has come yet."""
     custom_mode: int = 0
     armed: bool = False
     """True if its last heartbeat says so."""
@@ -72,8 +74,9 @@ class VehicleStatus:
         """Its last STATUSTEXT in brackets; empty: there is none."""
         return f" ({self.texts[-1]})" if self.texts else ""
 
-    def heartbeat(self, base_mode: int, custom_mode: int) -> None:
-        """Take the modes in a heartbeat of the autopilot."""
+    def heartbeat(self, autopilot: int, base_mode: int, custom_mode: int) -> None:
+        """Take the kind and the modes in a heartbeat of the autopilot."""
+        self.autopilot = autopilot
         self.custom_mode = custom_mode
         self.armed = bool(base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
         self.offboard = custom_mode == px4.MODE_OFFBOARD
@@ -181,6 +184,6 @@ class VehicleLink:
 
     def _handle_message(self, message: Message, component: int) -> None:
         if component == _AUTOPILOT and isinstance(message, mavlink.MAVLink_heartbeat_message):
-            self.status.heartbeat(message.base_mode, message.custom_mode)
+            self.status.heartbeat(message.autopilot, message.base_mode, message.custom_mode)
         self.status.handle(message)
         self.requests.handle(message)

@@ -1,12 +1,17 @@
 """Before take-off: what a vehicle lacks is named, and where payload and vehicles stand is averaged."""
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
+from autopilots_page import listing
 
 from gcs.config.flight_settings import DEFAULTS
-from gcs.flight.preflight import NEEDED_PARAMETERS, Preflight
+from gcs.flight.autopilot_requirements import PARAMETERS, REQUIREMENTS
+from gcs.flight.preflight import Preflight
+from gcs.mavlink import px4
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 
@@ -19,8 +24,11 @@ def complete(system_id, address):
     """A link on which everything has come."""
     link = VehicleLink(system_id, address)
     link.received_at = link.attitude_received_at = link.position_received_at = link.payload_received_at = NOW
-    link.status.parameters.update(dict.fromkeys(NEEDED_PARAMETERS, 1.0))
+    link.status.parameters.update(dict.fromkeys(PARAMETERS, 1.0))
     link.status.prearm_ok = False
+    link.status.heartbeat(mavlink.MAV_AUTOPILOT_PX4, 0, 0)
+    link.status.landed_state = mavlink.MAV_LANDED_STATE_ON_GROUND
+    link.clock.add_answer(link.clock.request(NOW), NOW + 0.01)
     return link
 
 
@@ -43,36 +51,52 @@ def test_vehicles_that_have_sent_all_are_connected_whether_ready_or_not(links):
 
 
 @pytest.mark.parametrize(
-    ("field", "text"),
+    ("field", "lacking"),
     [
-        ("received_at", "does not answer at 10.0.0.7:14581"),
-        ("attitude_received_at", "sends no attitude and position"),
-        ("position_received_at", "sends no attitude and position"),
-        ("payload_received_at", "relays no payload navigation data"),
+        ("attitude_received_at", "ATTITUDE_QUATERNION"),
+        ("position_received_at", "LOCAL_POSITION_NED"),
+        ("payload_received_at", "ATTITUDE_QUATERNION and LOCAL_POSITION_NED of the payload unit"),
     ],
 )
-def test_what_has_not_come_for_the_timeout_is_named_with_its_vehicle(links, field, text):
+def test_telemetry_that_has_not_come_for_the_timeout_is_named_with_its_vehicle(links, field, lacking):
     setattr(links[1], field, NOW - 0.99 * TIMEOUT)
     assert connected(links) == ""
     setattr(links[1], field, NOW - 1.01 * TIMEOUT)
-    silent = "1 of 2 vehicles connected: " if field == "received_at" else ""
-    assert connected(links) == f"{silent}vehicle 7 {text}"
+    assert connected(links) == f"vehicle 7 has not sent {lacking}"
 
 
-def test_parameters_and_readiness_that_are_not_known_are_named(links):
-    links[1].status.prearm_ok = None
-    assert connected(links) == "vehicle 7 has not reported whether it is ready"
-    del links[1].status.parameters[NEEDED_PARAMETERS[1]], links[1].status.parameters[NEEDED_PARAMETERS[4]]
-    assert connected(links) == f"vehicle 7 does not send {NEEDED_PARAMETERS[1]}, {NEEDED_PARAMETERS[4]}"
+def test_vehicle_of_which_nothing_has_come_is_named_with_its_address(links):
+    links[1].received_at = NOW - 1.01 * TIMEOUT
+    assert connected(links) == "1 of 2 vehicles connected: vehicle 7 does not answer at 10.0.0.7:14581"
 
 
-def test_first_vehicle_that_lacks_something_is_named_by_what_lacks_first(links):
-    for link in links:
-        link.status.prearm_ok = None
-        link.status.parameters.clear()
-    assert connected(links).startswith("vehicle 4 does not send ")
-    links[0].payload_received_at = links[0].position_received_at = 0.0
-    assert connected(links) == "vehicle 4 sends no attitude and position"
+def test_all_that_vehicles_lack_is_named_at_once_and_vehicles_that_lack_the_same_together(links):
+    names = [row.what for row in REQUIREMENTS if row.at_connect]
+    nothing = VehicleLink(7, ADDRESSES[1])
+    nothing.received_at = NOW
+    assert connected([links[0], nothing]) == f"vehicle 7 has not sent {', '.join(names)}"
+    other = VehicleLink(4, ADDRESSES[0])
+    other.received_at = NOW
+    assert connected([other, nothing]) == f"vehicles 4, 7 have not sent {', '.join(names)}"
+    links[0].status.prearm_ok = None
+    del links[1].status.parameters[px4.PARAM_LAND_DELAY]
+    assert connected(links) == (
+        "vehicle 4 has not sent SYS_STATUS with MAV_SYS_STATUS_PREARM_CHECK; vehicle 7 has not sent CLFT_LAND_DELAY"
+    )
+
+
+def test_modes_of_another_autopilot_are_not_taken_for_those_of_px4(links):
+    links[0].status.heartbeat(mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, 0, 0)
+    assert connected(links) == "vehicle 4 has not sent HEARTBEAT of MAV_AUTOPILOT_PX4"
+
+
+def test_page_of_autopilots_is_made_from_the_table():
+    page = (Path(__file__).parents[2] / "docs" / "autopilots.md").read_text(encoding="utf-8")
+    assert page == listing()
+    assert all(row.what in page for row in REQUIREMENTS)
+
+
+def test_vehicle_that_is_not_heard_is_named_by_what_is_heard_in_its_place(links):
     links[0].received_at = 0.0
     links[0].conflict.other_system_id = 9
     one = "1 of 2 vehicles connected: "
@@ -114,7 +138,7 @@ def test_parameters_are_requested_from_all_and_the_time_of_the_first_attempt_is_
         preflight.connect(now)
     assert preflight.connect_start == NOW
     for link in links:
-        assert sorted(m.param_id for m in link.requests.due(NOW)) == sorted(NEEDED_PARAMETERS)
+        assert sorted(m.param_id for m in link.requests.due(NOW)) == sorted(PARAMETERS)
 
 
 def position(source, *place):
@@ -144,3 +168,13 @@ def test_places_are_settled_once_averaged_for_their_time(links):
     preflight.check_start = 20.0
     settle_time = DEFAULTS.takeoff_landing.settle_time
     assert not preflight.is_settled(20.0 + 0.99 * settle_time) and preflight.is_settled(20.0 + settle_time)
+
+
+def test_interval_of_positions_is_the_shortest_of_each_source(links):
+    preflight = Preflight(SimpleNamespace(links=links))
+    for time in (0.0, 0.04, 0.04, 0.2, 0.16, 0.24):
+        for source in (PAYLOAD, 0, 1):
+            preflight.add(Position(2.0 * time if source == 1 else time, source, np.zeros(3), np.zeros(3)))
+    assert preflight.slow_source(0.08) is None
+    assert preflight.slow_source(0.05) == (1, pytest.approx(0.08))
+    assert preflight.slow_source(0.039)[0] == 1

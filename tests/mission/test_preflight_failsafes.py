@@ -1,13 +1,16 @@
 """Checks on the pad that refuse a take-off: armed, pre-arm checks, positions, places over the payload."""
 
+import math
 from types import SimpleNamespace
 
 import numpy as np
+import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
 
 from gcs.config import read_system
 from gcs.config.flight_settings import DEFAULTS
 from gcs.flight.alarms import AlarmLog
+from gcs.flight.autopilot_requirements import PARAMETERS as NEEDED
 from gcs.flight.condition import Check, Moment, System
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.failsafe_state import FailsafeState
@@ -33,25 +36,39 @@ EXPECTED = {
 }  # fmt: skip
 
 
-def checked(time, armed=(), failing=(), places=PLACES, silent=(), begin=BEGIN, poles=(), **parameters):
+def checked(
+    time, armed=(), failing=(), places=PLACES, silent=(), begin=BEGIN, poles=(), later=(), round_trip=0.0, **parameters
+):
     """(Failsafe, trigger) of a team on the pad, or None."""
     statuses = [
         SimpleNamespace(
             armed=i in armed,
             prearm_ok=i not in failing,
             last_text=": no GPS",
-            parameters=EXPECTED | (parameters if i == 1 else {}),
+            autopilot=mavlink.MAV_AUTOPILOT_PX4,
+            landed_state=mavlink.MAV_LANDED_STATE_ON_GROUND,
+            parameters=dict.fromkeys(NEEDED, 1.0) | EXPECTED | (parameters if i == 1 else {}),
         )
         for i in range(len(places))
     ]
-    clock = SimpleNamespace(queue=LinkQueue(1.0), round_trip_excess=0.0, delay=0.0, round_trip_max=0.0)
-    links = [SimpleNamespace(system_id=i + 1, status=status, clock=clock) for i, status in enumerate(statuses)]
+    clock = SimpleNamespace(
+        queue=LinkQueue(1.0), round_trip_excess=0.0, delay=0.0, round_trip_max=round_trip, least_delay=lambda *_: 0.0
+    )
+    links = [
+        SimpleNamespace(
+            system_id=i + 1, status=status, clock=clock, attitude_received_at=0.0, position_received_at=0.0,
+            payload_received_at=0.0,
+        )
+        for i, status in enumerate(statuses)
+    ]  # fmt: skip
     team = SimpleNamespace(links=links, parameters=PARAMETERS)
     preflight = Preflight(team)
     preflight.check_start = begin
     for source, place in ((PAYLOAD, PAD), *enumerate(places)):
         if source not in silent:
             preflight.add(Position(begin, source, place, np.zeros(3)))
+    for measurement in later:
+        preflight.add(measurement)
     standing = StandingObstacles(
         [MapObstacle(f"pole {r:g}", Pole(r, 6.0), np.array([x, y, -3.0])) for x, y, r in poles]
     )
@@ -116,3 +133,25 @@ def test_obstacle_that_reaches_into_the_formation_is_refused_and_named(gap, is_r
         assert found[1].source == "pole 0.3"
         assert found[1].reason.startswith("on the pad, pole 0.3 reaches ")
         assert found[1].reason.endswith(" m into the formation there")
+
+
+@pytest.mark.parametrize(("interval", "is_refused"), [(0.05, False), (0.052, True), (0.2, True)])
+@pytest.mark.parametrize("source", [PAYLOAD, 2])
+def test_telemetry_that_comes_less_often_than_setpoints_are_sent_is_refused(source, interval, is_refused):
+    later = [
+        Position(BEGIN + k * interval, source, PAD if source == PAYLOAD else PLACES[2], np.zeros(3)) for k in (1, 2)
+    ]
+    found = checked(SETTLED, later=later)
+    assert (found is not None) == is_refused
+    if is_refused:
+        name = "the payload unit" if source == PAYLOAD else "vehicle 3"
+        assert found[0] is Failsafe.AUTOPILOT_UNFIT
+        assert (
+            found[1].reason
+            == f"{name} sends positions at {1.0 / interval:.3g} Hz; a flight needs 20 Hz (rates.control)"
+        )
+
+
+def test_vehicles_that_do_not_answer_timesync_are_refused():
+    found, trigger = checked(SETTLED, round_trip=math.inf)
+    assert found is Failsafe.AUTOPILOT_UNFIT and trigger.reason == "vehicle 1 has not sent TIMESYNC answers"

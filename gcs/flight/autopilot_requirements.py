@@ -1,0 +1,108 @@
+"""What an autopilot must offer to carry a payload with others: one table, for preflight and for ``docs/autopilots.md``.
+
+Nothing here asks which program a vehicle runs: what it has sent counts.
+"""
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+
+from gcs.mavlink import px4
+from gcs.mavlink.vehicle_link import VehicleLink
+
+
+class Requirement(NamedTuple):
+    """Something that an autopilot must offer."""
+
+    what: str
+    """The message or parameter."""
+    purpose: str
+    is_offered: Callable[[VehicleLink, float], bool]
+    """Whether it has come, and telemetry since a time (s, ground)."""
+    at_control_rate: bool = False
+    """Whether it must come at least as often as set-points are sent (``rates.control``)."""
+    at_connect: bool = True
+    """Whether the team is not connected without it; what takes several round trips is wanted before arming."""
+
+
+PARAMETERS = {
+    px4.PARAM_THRUST_MAX: "force of thrust 1 (N); thrust must be linear in force",
+    px4.PARAM_ATTITUDE_KP: "attitude gain (1/s2), for the model",
+    px4.PARAM_ATTITUDE_KD: "rate gain (1/s), for the model",
+    px4.PARAM_MOTOR_LAG: "time constant of the motors (s), for the model",
+    px4.PARAM_ONBOARD_RATE: "rate of the onboard loop (Hz): when a set-point takes effect",
+    px4.PARAM_SETPOINT_LOSS: "time without set-points after which the vehicle holds by its stop plan (s)",
+    px4.PARAM_LAND_DELAY: "time from that hold to the descent (s)",
+}
+"""Parameters that it must have, and what for."""
+
+
+def _has_sent(parameter: str) -> Callable[[VehicleLink, float], bool]:
+    return lambda link, since: parameter in link.status.parameters
+
+
+REQUIREMENTS = (
+    Requirement(
+        "HEARTBEAT of MAV_AUTOPILOT_PX4",
+        "arming state and PX4's modes; OFFBOARD, AUTO.LOITER and AUTO.LAND are commanded",
+        lambda link, since: link.status.autopilot == mavlink.MAV_AUTOPILOT_PX4,
+    ),
+    Requirement(
+        "ATTITUDE_QUATERNION",
+        "attitude and body rates of the UAV, for the estimator",
+        lambda link, since: link.attitude_received_at >= since,
+        at_control_rate=True,
+    ),
+    Requirement(
+        "LOCAL_POSITION_NED",
+        "position and velocity of the UAV, for the estimator; one origin for the whole team",
+        lambda link, since: link.position_received_at >= since,
+        at_control_rate=True,
+    ),
+    Requirement(
+        "ATTITUDE_QUATERNION and LOCAL_POSITION_NED of the payload unit",
+        f"motion of the payload, from which and from the UAVs' positions the directions of the links follow; relayed "
+        f"from system {px4.PAYLOAD_UNIT_SYSTEM}, component {px4.PAYLOAD_UNIT_COMPONENT}",
+        lambda link, since: link.payload_received_at >= since,
+        at_control_rate=True,
+    ),
+    Requirement(
+        "EXTENDED_SYS_STATE",
+        "landed state, by which touchdown is confirmed",
+        lambda link, since: link.status.landed_state != mavlink.MAV_LANDED_STATE_UNDEFINED,
+    ),
+    Requirement(
+        "SYS_STATUS with MAV_SYS_STATUS_PREARM_CHECK",
+        "whether the vehicle is ready to be armed",
+        lambda link, since: link.status.prearm_ok is not None,
+    ),
+    Requirement(
+        "TIMESYNC answers",
+        "clock and latency of the link",
+        lambda link, since: math.isfinite(link.clock.round_trip_max),
+        at_connect=False,
+    ),
+    *(Requirement(name, purpose, _has_sent(name)) for name, purpose in PARAMETERS.items()),
+)
+"""Evaluated in this order."""
+
+USED_IF_OFFERED = (
+    ("SET_ATTITUDE_TARGET, taken at `rates.control`", "the set-points: attitude and thrust"),
+    ("TRAJECTORY_REPRESENTATION_BEZIER, taken", "the stop plan that is flown when set-points are lost"),
+    ("ATTITUDE_TARGET", "which set-point is in force: without it the estimator assumes that all arrive"),
+    ("OBSTACLE_DISTANCE_3D and OBSTACLE_DISTANCE", "returns of the range sensor: without them only the map is avoided"),
+    ("VIBRATION", "clipping of the accelerometer, a sign of an impact"),
+    ("STATUSTEXT", "reasons in messages to the operator"),
+)
+"""Not checked: what an autopilot takes cannot be seen before it flies, and flights go on without the rest."""
+
+
+def missing(link: VehicleLink, since: float, at_connect: bool) -> list[str]:
+    """Return all that a vehicle lacks; telemetry counts if it came at ``since`` (s, ground) or later.
+
+    ``at_connect``: of what is wanted then, else of all.
+    """
+    wanted = (row for row in REQUIREMENTS if row.at_connect or not at_connect)
+    return [row.what for row in wanted if not row.is_offered(link, since)]
