@@ -148,6 +148,14 @@ class Peer:
             self._replies += [self._codecs[component].frame(message) for message in messages]
             self.next_due = -math.inf
 
+    def reply_built(self, built: Built, component: int = _AUTOPILOT) -> None:
+        """Send what was built of one message with the next datagrams, as :meth:`reply` does."""
+        if not isinstance(built, PackedRun):
+            self.reply_packed(*built, component=component)
+        elif len(self._replies) < self._settings.replies_max:
+            self._replies += self._codecs[component].frames(built)
+            self.next_due = -math.inf
+
     def send_statustext(self, text: str, severity: int = mavlink.MAV_SEVERITY_WARNING) -> None:
         """Send a text to the operator as STATUSTEXT, a long one in chunks, of which the last has room left."""
         data = text.encode("ascii", "replace")

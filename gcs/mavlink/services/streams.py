@@ -69,7 +69,7 @@ class StreamRequests:
         built = self._source.builders[key](request.now)
         if not built:
             return rejected_for_now(f"Message {wanted} denied: {self._source.absence(key) or 'no data of it now'}")
-        request.peer.reply_packed(*built, component=self._component)
+        request.peer.reply_built(built, self._component)
         return ACCEPTED
 
     def _set_message_interval(self, message: Command, request: Request) -> Answer:
