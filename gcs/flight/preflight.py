@@ -61,6 +61,9 @@ class Preflight:
             self.missing = f"{team - len(silent)} of {team} vehicles connected: {'; '.join(silent)}"
         else:
             self.missing = incomplete[0] if incomplete else ""
+        if not self.missing:
+            for link in self._team.links:
+                link.requests.want_log()
         return not self.missing
 
     def add(self, measurement: Measurement) -> None:
