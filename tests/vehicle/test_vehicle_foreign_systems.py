@@ -56,10 +56,31 @@ def test_excessive_requests_are_rate_limited(flying: Bench) -> None:
     flying.collect()
     flying.inbox.clear()
     for _ in range(1000):
-        flying.send(mavlink.MAVLink_param_request_list_message(1, 1), STRANGER)
+        flying.send(mavlink.MAVLink_param_request_read_message(1, 1, b"COM_DL_LOSS_T", -1), STRANGER)
     flying.collect()
     assert len(flying.got("PARAM_VALUE", STRANGER)) == VehicleLinkSettings().replies_max
     assert flying.result(command(512, mavlink.MAVLINK_MSG_ID_HOME_POSITION), STRANGER) == ACCEPTED
+
+
+def test_lists_of_parameters_requested_at_the_grounds_address_do_not_fill_its_link(flying: Bench) -> None:
+    def sent_in_a_second(requests: int) -> int:
+        flying.collect()
+        flying.datagrams.clear()
+        for _ in range(50):
+            for _ in range(requests):
+                flying.send(mavlink.MAVLink_param_request_list_message(1, 1), GROUND, 42)
+            flying.run(0.02)
+        return sum(len(datagram) for _, datagram, address in flying.datagrams if address == GROUND)
+
+    usual = sent_in_a_second(0)
+    lists = len(flying.vehicle.parameters) + 1
+    assert usual < sent_in_a_second(20) < usual + 6 * 37 * lists
+    # Who asks again later gets it.
+    flying.run(0.3)
+    flying.inbox.clear()
+    flying.send(mavlink.MAVLink_param_request_list_message(1, 1))
+    flying.collect()
+    assert len(flying.got("PARAM_VALUE")) == lists
 
 
 def test_second_ground_may_take_control_after_setpoint_timeout(flying: Bench) -> None:

@@ -92,6 +92,8 @@ class MissionServer:
     def _on_request_partial_list(
         self, message: mavlink.MAVLink_mission_request_partial_list_message, request: Request
     ) -> None:
+        if request.peer.is_full:
+            return  # the items would be dropped
         if (plan_type := _plan_type(message, request)) is not None:
             self._download.on_request_partial(plan_type, message.start_index, message.end_index, request)
 
