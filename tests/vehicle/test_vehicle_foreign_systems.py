@@ -83,6 +83,24 @@ def test_lists_of_parameters_requested_at_the_grounds_address_do_not_fill_its_li
     assert len(flying.got("PARAM_VALUE")) == lists
 
 
+def test_heartbeat_with_a_forged_address_draws_no_more_than_it_sent() -> None:
+    """Whatever the vehicle has to say meanwhile: streams, changes, texts, parameters that another has set."""
+    bench = Bench(clients_answer=False, clients={GROUND: True})
+    bench.run(0.1)
+    bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3))
+    bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3), STRANGER)
+    for _ in range(3):
+        bench.send(mavlink.MAVLink_param_set_message(1, 1, b"COM_OF_LOSS_T", 0.7, mavlink.MAV_PARAM_TYPE_REAL32))
+        bench.send(mavlink.MAVLink_param_set_message(1, 1, b"NO_SUCH", 0.7, mavlink.MAV_PARAM_TYPE_REAL32))
+        assert bench.result(command(400, 1)) == ACCEPTED
+        assert bench.result(command(400, 0)) == ACCEPTED
+        bench.run(1.0)
+    sent = [datagram for _, datagram, address in bench.datagrams if address == STRANGER]
+    heartbeat = 21
+    assert len(b"".join(sent)) == heartbeat
+    assert len(bench.got("PARAM_VALUE")) >= 3  # the ground was told all of it
+
+
 def test_second_ground_may_take_control_after_setpoint_timeout(flying: Bench) -> None:
     flying.streaming = {(STRANGER, 42): attitude_target(thrust=HOVER)}
     flying.run(VehicleFailsafeSettings.setpoint_loss - 0.08)
