@@ -59,6 +59,9 @@ class Preflight:
             self.missing = f"{team - len(silent)} of {team} vehicles connected: {'; '.join(silent)}"
         else:
             self.missing = "; ".join(f"{_vehicles(ids)} not sent {what}" for what, ids in incomplete.items())
+        if not self.missing:
+            for link in self._team.links:
+                link.requests.want_log()
         return not self.missing
 
     def add(self, measurement: Measurement) -> None:

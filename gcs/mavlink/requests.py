@@ -7,6 +7,7 @@ from enum import Enum
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
+from gcs.mavlink.log_requests import LogRequests
 from gcs.mavlink.messages import Message
 from gcs.mavlink.settings import LinkSettings
 
@@ -52,10 +53,13 @@ class Requests:
     """Commands and parameter reads of one vehicle. Times are the ground's (s)."""
 
     def __init__(self, system_id: int, parameters: dict[str, float], settings: LinkSettings) -> None:
-        """``parameters`` takes the values that the vehicle answers."""
+        """``parameters`` takes the values of those that are wanted."""
         self._system_id, self._parameters, self._settings = system_id, parameters, settings
         self._pending: dict[int, Command] = {}
         self._wanted: dict[str, float] = {}
+        self._kept: set[str] = set()
+        """Names of the parameters that were ever wanted: any others, forged ones too, are not kept."""
+        self._for_log = LogRequests(system_id, settings)
         self._payload_unit_wanted = False
         self._payload_unit_due = -math.inf
 
@@ -63,8 +67,13 @@ class Requests:
         """Request that the vehicle forwards the payload unit's telemetry here: another one may do it in its place."""
         self._payload_unit_wanted = True
 
+    def want_log(self) -> None:
+        """Request, once, what its log is to have: see :class:`.LogRequests`."""
+        self._for_log.want()
+
     def want_parameters(self, names: tuple[str, ...]) -> None:
         """Request parameters until they are known."""
+        self._kept.update(names)
         for name in names:
             if name not in self._parameters:
                 self._wanted.setdefault(name, -math.inf)
@@ -77,7 +86,7 @@ class Requests:
 
     def due(self, now: float) -> list[Message]:
         """Return the requests that are to be sent at ``now``."""
-        messages: list[Message] = []
+        messages = self._for_log.due(now)
         if self._payload_unit_wanted and now >= self._payload_unit_due:
             self._payload_unit_wanted, self._payload_unit_due = False, now + self._settings.retry_interval
             messages += [_PAYLOAD_UNIT_ATTITUDE, _PAYLOAD_UNIT_POSITION]
@@ -111,7 +120,8 @@ class Requests:
                 command.result = message.result
                 accepted = message.result == mavlink.MAV_RESULT_ACCEPTED
                 command.state = CommandState.ACCEPTED if accepted else CommandState.REFUSED
-        elif isinstance(message, mavlink.MAVLink_param_value_message):
+        self._for_log.handle(message)
+        if isinstance(message, mavlink.MAVLink_param_value_message) and message.param_id in self._kept:
             try:
                 value = px4.parameter_from_wire(message.param_value, message.param_type)
             except ValueError:

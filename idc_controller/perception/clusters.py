@@ -15,8 +15,8 @@ from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.geometry.shape import Shape
 from idc_controller.geometry.shapes import Wall
 from idc_controller.perception.cluster_kernels import bounded_clusters, connected
+from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.range_sensors import RayPattern
-from idc_controller.perception.scan_placement import PlacedScan
 from idc_controller.perception.surfaces.points import SurfacePoints
 
 _GAP_MIN = 0.6

@@ -23,7 +23,7 @@ import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.perception.motion_evidence_kernels import FrameRays, Places, by_sector, count_rays
-from idc_controller.perception.scan_placement import PlacedScan
+from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.surfaces.points import SurfacePoints
 

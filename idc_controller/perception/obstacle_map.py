@@ -15,8 +15,9 @@ from idc_controller.perception.clusters import Cluster, Segmentation, associate,
 from idc_controller.perception.map_check import MapCheck
 from idc_controller.perception.motion_evidence import Frame
 from idc_controller.perception.motion_imm import MotionModels
+from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.range_sensors import SensorModel
-from idc_controller.perception.scan_placement import PlacedScan, ScanPlacement, SensorRays
+from idc_controller.perception.scan_placement import ScanPlacement, SensorRays
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.standing_obstacles import MapObstacle, SeenObstacles, StandingObstacles
 from idc_controller.perception.track import Track

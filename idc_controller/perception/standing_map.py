@@ -22,8 +22,8 @@ from idc_controller.geometry.shape import Shape
 from idc_controller.perception import map_query_kernels as queries
 from idc_controller.perception import upright_box_kernels as boxes
 from idc_controller.perception.carving_kernels import carve, followed_rays, release
+from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.return_kernels import add_returns, capacity_for, enter_pages
-from idc_controller.perception.scan_placement import PlacedScan
 from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.sight_kernels import first_hidden, unseen_cells
 from idc_controller.perception.voxel_kernels import (

@@ -1,7 +1,10 @@
 """The ports of SDKs and ground stations, to which a swarm sends in real time: what comes to each, and how often."""
 
+import socket
+
 import pymavlink.dialects.v20.common as mavlink
 import pytest
+from programs import PATIENCE, process
 
 from gcs.config import read_system
 from gcs.mavlink import px4
@@ -120,3 +123,29 @@ def test_port_of_ground_stations_gets_the_payload_unit_once_where_it_is_an_sdks_
     assert {i for i, _ in heard.of_unit(STATIONS)} == {1}
     sent = [m.time_boot_ms for i, m in heard.messages[STATIONS] if i == vehicles and m.get_type() == "ATTITUDE"]
     assert sent and len(set(sent)) == len(sent)
+
+
+@pytest.mark.slow
+def test_ground_on_another_address_is_sent_to_and_commands_from_there():
+    """Another address of this machine stands for another machine."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ground:
+        ground.bind(("127.0.0.2", 0))
+        ground.settimeout(PATIENCE)
+        host, port = ground.getsockname()
+        with process("--base-port", 0, "--sdk-port", 0, "--ground-host", host, "--ground-port", port) as (
+            _,
+            _,
+            vehicles,
+        ):
+            codec, acknowledged, heard = Codec(255, 190), set(), set()
+            while len(acknowledged) < len(vehicles):
+                datagram, sender = ground.recvfrom(65535)
+                for received in codec.decode(datagram):
+                    message = received.message
+                    if message.get_type() == "COMMAND_ACK" and message.result == mavlink.MAV_RESULT_ACCEPTED:
+                        acknowledged.add(received.system)
+                    elif message.get_type() == "HEARTBEAT" and received.system not in (*heard, UNIT[0]):
+                        heard.add(received.system)
+                        arm = mavlink.MAVLink_command_long_message(received.system, 1, 400, 0, 1, 0, 0, 0, 0, 0, 0)
+                        ground.sendto(codec.encode(arm), sender)
+    assert acknowledged == {1, 2, 3, 4}

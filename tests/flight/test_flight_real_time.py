@@ -13,8 +13,9 @@ from gcs.drivers.interrupt import Interrupt
 from gcs.drivers.realtime import run_in_real_time
 from gcs.mission.read import read_mission
 from gcs.record.recorder import FlightRecorder
-from vehicle_sim.app.drivers import RealTimeDriver, SwarmSockets
+from vehicle_sim.app.drivers import RealTimeDriver
 from vehicle_sim.app.ending import Ending
+from vehicle_sim.app.swarm_sockets import SwarmSockets
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.truth_log import TruthLog
 

@@ -175,6 +175,34 @@ def test_each_vehicle_is_sent_one_setpoint_and_one_stop_plan_a_step(flown):
         assert sent[kind] == pytest.approx(4 * number, rel=0.03), kind
 
 
+def test_log_has_what_each_vehicle_is_its_time_and_all_of_its_parameters(flown):
+    log = mavutil.mavlink_connection(str(flown.folder / "telemetry.tlog"))
+    found = {vehicle.system_id: Counter() for vehicle in flown.swarm.vehicles}
+    parameters = {system_id: {} for system_id in found}
+    versions = set()
+    while (message := log.recv_match()) is not None:
+        sender = message.get_srcSystem()
+        if sender in found:
+            found[sender][message.get_type()] += 1
+        if message.get_type() == "PARAM_VALUE":
+            parameters[sender][message.param_id] = message.param_value
+        elif message.get_type() == "AUTOPILOT_VERSION":
+            versions.add((sender, message.uid))
+    log.close()
+    # Each identifies itself by its system id.
+    assert versions == {(system_id, system_id) for system_id in found}
+    for vehicle in flown.swarm.vehicles:
+        of_vehicle = found[vehicle.system_id]
+        known = {
+            parameter.name: px4.parameter_to_wire(parameter.value, parameter.type) for parameter in vehicle.parameters
+        }
+        read = parameters[vehicle.system_id]
+        assert read.pop("_HASH_CHECK") is not None and read == pytest.approx(known, nan_ok=True)
+        seconds = flown.phases[Phase.ENDED] - flown.phases[Phase.CHECK]
+        assert of_vehicle["AUTOPILOT_VERSION"] == 1
+        assert of_vehicle["SYSTEM_TIME"] >= seconds - 1 and of_vehicle["MISSION_CURRENT"] >= seconds - 1
+
+
 def test_map_has_the_detected_obstacle_and_the_known_one(flown):
     obstacle_map, time = flown.flight.system.obstacle_map, flown.flight.time
     predicted = {o.name: o for o in obstacle_map.predict(np.array([time]))}

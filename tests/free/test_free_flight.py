@@ -21,92 +21,78 @@ def reposition(bench, north, east, up, yaw=NAN, speed=NAN):
     return bench.vehicles[0].aircraft.reposition(Reposition(latitude, longitude, altitude, yaw, speed), bench.now)
 
 
-def test_take_off_mode_climbs_to_the_parameters_height_then_loiters():
-    with FreeBench() as bench:
-        bench.run(0.5)
-        bench.set_parameter("MIS_TAKEOFF_ALT", 4.0)
-        assert bench.command(ARM, 1) == ACCEPTED
-        bench.run(0.5)
-        assert bench.position()[2] == pytest.approx(-0.02, abs=0.01)  # armed in LOITER it stays on the ground
-        assert bench.command(*mode(px4.AutoMode.TAKEOFF)) == ACCEPTED
-        bench.run(0.1)
-        assert bench.mode_of() == "AUTO.TAKEOFF"
-        assert bench.run(10.0, lambda: bench.mode_of() == "AUTO.LOITER")
-        bench.run(3.0)
-        assert bench.position() == pytest.approx((0.0, 0.0, -4.0), abs=0.2)
-        path = bench.path()
-        assert -path[:, 2].min() < 4.3
-        assert -path[:, 9].min() == pytest.approx(1.5, abs=0.3)  # MPC_TKO_SPEED
+def test_take_off_mode_climbs_to_the_parameters_height_then_loiters(bench):
+    bench.set_parameter("MIS_TAKEOFF_ALT", 4.0)
+    assert bench.command(ARM, 1) == ACCEPTED
+    bench.run(0.5)
+    assert bench.position()[2] == pytest.approx(-0.02, abs=0.01)  # armed in LOITER it stays on the ground
+    assert bench.command(*mode(px4.AutoMode.TAKEOFF)) == ACCEPTED
+    bench.run(0.1)
+    assert bench.mode_of() == "AUTO.TAKEOFF"
+    assert bench.run(10.0, lambda: bench.mode_of() == "AUTO.LOITER")
+    bench.run(3.0)
+    assert bench.position() == pytest.approx((0.0, 0.0, -4.0), abs=0.2)
+    path = bench.path()
+    assert -path[:, 2].min() < 4.3
+    assert -path[:, 9].min() == pytest.approx(1.5, abs=0.3)  # MPC_TKO_SPEED
 
 
-def test_take_off_commanded_before_arming_begins_when_armed():
-    with FreeBench() as bench:
-        bench.run(0.5)
-        assert bench.vehicles[0].aircraft.take_off(DEFAULT_HOME.altitude + 3.0, bench.now).result == ACCEPTED
-        bench.run(0.5)
-        assert not bench.armed()
-        assert bench.command(ARM, 1) == ACCEPTED
-        bench.run(6.0)
-        assert bench.position()[2] == pytest.approx(-3.0, abs=0.2)
+def test_take_off_commanded_before_arming_begins_when_armed(bench):
+    assert bench.vehicles[0].aircraft.take_off(DEFAULT_HOME.altitude + 3.0, bench.now).result == ACCEPTED
+    bench.run(0.5)
+    assert not bench.armed()
+    assert bench.command(ARM, 1) == ACCEPTED
+    bench.run(6.0)
+    assert bench.position()[2] == pytest.approx(-3.0, abs=0.2)
 
 
-def test_go_to_ends_at_the_place_with_yaw_at_the_speed():
-    with FreeBench() as bench:
-        bench.take_off()
-        began = len(bench.track)
-        assert reposition(bench, 12.0, -5.0, 8.0, yaw=math.radians(100.0), speed=3.0).result == ACCEPTED
-        bench.run(12.0)
-        assert bench.mode_of() == "AUTO.LOITER"
-        assert bench.position() == pytest.approx((12.0, -5.0, -8.0), abs=0.3)
-        assert math.degrees(bench.heading()) == pytest.approx(100.0, abs=3.0)
-        path = bench.path()[began:]
-        assert np.hypot(path[:, 7], path[:, 8]).max() == pytest.approx(3.0, abs=0.3)
-        # About straight: no more than a metre beside the line.
-        line = np.array((12.0, -5.0)) / 13.0
-        assert np.abs(path[:, 0] * line[1] - path[:, 1] * line[0]).max() < 0.5
-        assert path[:, 0].max() < 12.4
+def test_go_to_ends_at_the_place_with_yaw_at_the_speed(flying):
+    began = len(flying.track)
+    assert reposition(flying, 12.0, -5.0, 8.0, yaw=math.radians(100.0), speed=3.0).result == ACCEPTED
+    flying.run(12.0)
+    assert flying.mode_of() == "AUTO.LOITER"
+    assert flying.position() == pytest.approx((12.0, -5.0, -8.0), abs=0.3)
+    assert math.degrees(flying.heading()) == pytest.approx(100.0, abs=3.0)
+    path = flying.path()[began:]
+    assert np.hypot(path[:, 7], path[:, 8]).max() == pytest.approx(3.0, abs=0.3)
+    # About straight: no more than a metre beside the line.
+    line = np.array((12.0, -5.0)) / 13.0
+    assert np.abs(path[:, 0] * line[1] - path[:, 1] * line[0]).max() < 0.5
+    assert path[:, 0].max() < 12.4
 
 
-def test_go_to_of_altitude_alone_stays_over_its_place():
-    with FreeBench() as bench:
-        bench.take_off()
-        goal = Reposition(NAN, NAN, DEFAULT_HOME.altitude + 9.0, NAN, NAN)
-        assert bench.vehicles[0].aircraft.reposition(goal, bench.now).result == ACCEPTED
-        bench.run(7.0)
-        assert bench.position() == pytest.approx((0.0, 0.0, -9.0), abs=0.3)
+def test_go_to_of_altitude_alone_stays_over_its_place(flying):
+    goal = Reposition(NAN, NAN, DEFAULT_HOME.altitude + 9.0, NAN, NAN)
+    assert flying.vehicles[0].aircraft.reposition(goal, flying.now).result == ACCEPTED
+    flying.run(7.0)
+    assert flying.position() == pytest.approx((0.0, 0.0, -9.0), abs=0.3)
 
 
-def test_go_to_is_rejected_on_the_ground():
-    with FreeBench() as bench:
-        bench.run(0.5)
-        answer = reposition(bench, 5.0, 0.0, 5.0)
-        assert answer.result == REJECTED and answer.text == "Reposition denied: not flying"
+def test_go_to_is_rejected_on_the_ground(bench):
+    answer = reposition(bench, 5.0, 0.0, 5.0)
+    assert answer.result == REJECTED and answer.text == "Reposition denied: not flying"
 
 
-def test_change_of_speed_is_flown_and_bounded():
-    with FreeBench() as bench:
-        bench.take_off()
-        reposition(bench, 60.0, 0.0, 5.0, speed=4.0)
-        bench.run(5.0)
-        assert bench.swarm.world.states()[0, 7] == pytest.approx(4.0, abs=0.3)
-        bench.set_parameter("MPC_XY_VEL_MAX", 8.0)
-        assert bench.vehicles[0].aircraft.change_speed(11.0, bench.now).result == ACCEPTED
-        bench.run(3.0)
-        assert bench.swarm.world.states()[0, 7] == pytest.approx(8.0, abs=0.3)
+def test_change_of_speed_is_flown_and_bounded(flying):
+    reposition(flying, 60.0, 0.0, 5.0, speed=4.0)
+    flying.run(5.0)
+    assert flying.swarm.world.states()[0, 7] == pytest.approx(4.0, abs=0.3)
+    flying.set_parameter("MPC_XY_VEL_MAX", 8.0)
+    assert flying.vehicles[0].aircraft.change_speed(11.0, flying.now).result == ACCEPTED
+    flying.run(3.0)
+    assert flying.swarm.world.states()[0, 7] == pytest.approx(8.0, abs=0.3)
 
 
-def test_hold_brakes_and_stays():
-    with FreeBench() as bench:
-        bench.take_off()
-        reposition(bench, 50.0, 0.0, 5.0)
-        bench.run(4.0)
-        before = bench.position()[0]
-        assert bench.command(*mode(px4.AutoMode.LOITER)) == ACCEPTED
-        bench.run(5.0)
-        stopped = bench.position().copy()
-        assert 2.0 < stopped[0] - before < 12.0
-        bench.run(3.0)
-        assert bench.position() == pytest.approx(stopped, abs=0.1)
+def test_hold_brakes_and_stays(flying):
+    reposition(flying, 50.0, 0.0, 5.0)
+    flying.run(4.0)
+    before = flying.position()[0]
+    assert flying.command(*mode(px4.AutoMode.LOITER)) == ACCEPTED
+    flying.run(5.0)
+    stopped = flying.position().copy()
+    assert 2.0 < stopped[0] - before < 12.0
+    flying.run(3.0)
+    assert flying.position() == pytest.approx(stopped, abs=0.1)
 
 
 def test_return_climbs_flies_home_lands_and_disarms():
@@ -139,35 +125,31 @@ def test_return_near_home_stays_within_the_cone():
         assert -bench.path()[:, 2].min() == pytest.approx(6.0, abs=0.5)
 
 
-def test_landing_touches_down_gently_where_it_is_and_disarms():
-    with FreeBench() as bench:
-        bench.take_off()
-        reposition(bench, 4.0, 3.0, 5.0)
-        bench.run(6.0)
-        assert bench.command(mavlink.MAV_CMD_NAV_LAND) == ACCEPTED
-        bench.run(0.5)
-        assert bench.mode_of() == "AUTO.LAND"
-        bench.messages.clear()
-        assert bench.run(20.0, lambda: not bench.armed())
-        path = bench.path()
-        low = (path[:, 2] > -1.0) & (path[:, 2] < -0.1)
-        assert path[low, 9][-10:] == pytest.approx(0.7, abs=0.15)  # MPC_LAND_SPEED
-        assert bench.position() == pytest.approx((4.0, 3.0, -0.02), abs=0.3)
-        bench.run(1.0)
-        assert "Touch-down: disarmed" in bench.texts()
-        assert bench.swarm.at_rest
-        assert bench.swarm.world.contacts() == (0, True)
+def test_landing_touches_down_gently_where_it_is_and_disarms(flying):
+    reposition(flying, 4.0, 3.0, 5.0)
+    flying.run(6.0)
+    assert flying.command(mavlink.MAV_CMD_NAV_LAND) == ACCEPTED
+    flying.run(0.5)
+    assert flying.mode_of() == "AUTO.LAND"
+    flying.messages.clear()
+    assert flying.run(20.0, lambda: not flying.armed())
+    path = flying.path()
+    low = (path[:, 2] > -1.0) & (path[:, 2] < -0.1)
+    assert path[low, 9][-10:] == pytest.approx(0.7, abs=0.15)  # MPC_LAND_SPEED
+    assert flying.position() == pytest.approx((4.0, 3.0, -0.02), abs=0.3)
+    flying.run(1.0)
+    assert "Touch-down: disarmed" in flying.texts()
+    assert flying.swarm.at_rest
+    assert flying.swarm.world.contacts() == (0, True)
 
 
-def test_landing_from_a_climb_does_not_disarm_in_the_air():
-    with FreeBench() as bench:
-        bench.take_off()
-        reposition(bench, 0.0, 0.0, 40.0)
-        bench.run(4.0)
-        assert bench.swarm.world.states()[0, 9] < -2.5
-        bench.command(mavlink.MAV_CMD_NAV_LAND)
-        assert bench.run(40.0, lambda: not bench.armed())
-        assert bench.position()[2] == pytest.approx(-0.02, abs=0.02)
+def test_landing_from_a_climb_does_not_disarm_in_the_air(flying):
+    reposition(flying, 0.0, 0.0, 40.0)
+    flying.run(4.0)
+    assert flying.swarm.world.states()[0, 9] < -2.5
+    flying.command(mavlink.MAV_CMD_NAV_LAND)
+    assert flying.run(40.0, lambda: not flying.armed())
+    assert flying.position()[2] == pytest.approx(-0.02, abs=0.02)
 
 
 def test_vehicle_flies_again_after_a_landing():
@@ -181,13 +163,11 @@ def test_vehicle_flies_again_after_a_landing():
         assert bench.position()[2] == pytest.approx(-3.0, abs=0.2)
 
 
-def test_disarming_in_the_air_needs_force():
-    with FreeBench() as bench:
-        bench.take_off()
-        assert bench.command(ARM, 0) == mavlink.MAV_RESULT_DENIED
-        assert bench.command(ARM, 0, px4.FORCE_ARM_DISARM) == ACCEPTED
-        bench.run(0.5)
-        assert bench.swarm.world.states()[0, 9] > 1.0  # it falls
+def test_disarming_in_the_air_needs_force(flying):
+    assert flying.command(ARM, 0) == mavlink.MAV_RESULT_DENIED
+    assert flying.command(ARM, 0, px4.FORCE_ARM_DISARM) == ACCEPTED
+    flying.run(0.5)
+    assert flying.swarm.world.states()[0, 9] > 1.0  # it falls
 
 
 def test_holds_its_place_against_wind():

@@ -11,8 +11,8 @@ from detours import detour_among
 from idc_controller.errors import TrajectoryError
 from idc_controller.geometry.free_space import BoundingCylinder, FreeSpace
 from idc_controller.geometry.shapes import Pole, Sphere, Wall
-from idc_controller.guidance.detour import straightened
 from idc_controller.guidance.settings import DetourSettings
+from idc_controller.guidance.straightening import straightened
 
 FORMATION = BoundingCylinder(radius=1.1, above=3.75, below=0.25)
 MARGIN = 0.5

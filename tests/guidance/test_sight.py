@@ -12,7 +12,7 @@ from gcs.config import SystemConfig
 from gcs.flight.stack import closing_speed_limit, reaction_time, tilted_formation
 from idc_controller.guidance.settings import SightSettings
 from idc_controller.guidance.sight import SensorView, SpeedBySight
-from idc_controller.perception.scan_placement import PlacedScan
+from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.sight_kernels import first_hidden, unseen_cells
 from idc_controller.perception.standing_map import StandingMap

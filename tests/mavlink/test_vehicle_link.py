@@ -138,8 +138,10 @@ def test_text_in_chunks_is_kept_as_one(linked):
     assert list(status.texts) == [text]
 
 
-def test_parameter_that_is_answered_is_known(linked):
-    linked.send(1.0, mavlink.MAVLink_param_value_message(b"THR_MAX", 27.5, mavlink.MAV_PARAM_TYPE_REAL32, 1, 0))
+def test_parameter_that_is_wanted_is_known_and_no_other_is_kept(linked):
+    linked.link.requests.want_parameters(("THR_MAX",))
+    for name in (b"THR_MAX", *(b"FORGED_%d" % number for number in range(500))):
+        linked.send(1.0, mavlink.MAVLink_param_value_message(name, 27.5, mavlink.MAV_PARAM_TYPE_REAL32, 1, 0))
     assert linked.link.status.parameters == {"THR_MAX": 27.5}
 
 

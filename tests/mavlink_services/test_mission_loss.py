@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as m
@@ -59,6 +60,17 @@ class LossyLink:
                     self.to_ground.append((self.time + delay, datagram, address))
         return [(r.message, a) for datagram, a in self._due(self.to_ground) for r in self.reader.decode(datagram)]
 
+    def transfer(self, ground: Uploader | Downloader, check: Callable[[], bool] = lambda: True) -> None:
+        """Let time pass until a ground is done; ``check`` holds after every step."""
+        began = self.time
+        self.send(ground.start(self.time))
+        while not ground.is_done:
+            for message, _ in self.step():
+                self.send(ground.take(message, self.time))
+            self.send(ground.run(self.time))
+            assert check()
+            assert self.time < began + LIMIT
+
     def _due(self, queue: list[tuple[float, bytes, Any]]) -> list[tuple[bytes, Any]]:
         due = sorted((entry for entry in queue if entry[0] <= self.time), key=lambda entry: entry[0])
         queue[:] = [entry for entry in queue if entry[0] > self.time]
@@ -72,13 +84,7 @@ def test_upload_ends_with_an_answer_and_the_new_plan_or_the_old_one(fates: list[
     plans = link.bench.plans
     plans.accept(PlanType.MISSION, tuple(OLD), 0)
     ground = Uploader(NEW)
-    link.send(ground.start(link.time))
-    while ground.result is None:
-        for message, _ in link.step():
-            link.send(ground.take(message, link.time))
-        link.send(ground.run(link.time))
-        assert same(plans.items, OLD) or same(plans.items, NEW)  # never a part
-        assert link.time < LIMIT
+    link.transfer(ground, lambda: same(plans.items, OLD) or same(plans.items, NEW))  # never a part
     if ground.result == ACCEPTED:
         assert same(plans.items, NEW)
     # Afterwards, over a good link: the vehicle is ready for anybody within the timeout, and both agree.
@@ -86,11 +92,7 @@ def test_upload_ends_with_an_answer_and_the_new_plan_or_the_old_one(fates: list[
     for _ in range(round((TIMEOUT + 2.0) / STEP)):
         link.step()
     again = Uploader(NEW)
-    link.send(again.start(link.time))
-    while again.result is None:
-        for message, _ in link.step():
-            link.send(again.take(message, link.time))
-        link.send(again.run(link.time))
+    link.transfer(again)
     assert again.result == ACCEPTED and same(plans.items, NEW)
 
 
@@ -100,12 +102,7 @@ def test_downloaded_plan_is_the_vehicles_or_none(fates: list[list[float]]) -> No
     link = LossyLink(fates)
     link.bench.plans.accept(PlanType.MISSION, tuple(NEW), 0)
     ground = Downloader()
-    link.send(ground.start(link.time))
-    while not ground.is_done:
-        for message, _ in link.step():
-            link.send(ground.take(message, link.time))
-        link.send(ground.run(link.time))
-        assert link.time < LIMIT
+    link.transfer(ground)
     assert ground.gave_up or same(ground.items, NEW)
 
 

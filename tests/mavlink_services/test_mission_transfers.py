@@ -24,8 +24,11 @@ from mission_ground import (
     texts,
     waypoint,
 )
-from vehicle_bench import STRANGER
+from vehicle_bench import GROUND, STRANGER
 
+from gcs.config.vehicle_settings import VehicleLinkSettings
+from gcs.mavlink.codec import Codec
+from gcs.mavlink.services import mission_download
 from gcs.mavlink.services.mission_item import PlanType
 
 
@@ -104,6 +107,21 @@ def test_partial_download_sends_a_bounded_number_of_items(free: MissionBench) ->
     assert [item.seq for item in free.answers(ask(1, 1, 2, 4))] == [2, 3, 4]
     assert len(free.answers(ask(1, 1, 1, -1))) == LIMITS.partial_list_max
     assert results(free.answers(ask(1, 1, 0, -1))) == [m.MAV_MISSION_NO_SPACE]
+
+
+def test_many_partial_downloads_in_one_datagram_build_hardly_more_items_than_are_sent(
+    free: MissionBench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    free.upload([waypoint(i) for i in range(LIMITS.partial_list_max)])
+    built = []
+    make = mission_download.item_message
+    monkeypatch.setattr(mission_download, "item_message", lambda *what: built.append(what) or make(*what))
+    ask = Codec(255, 190).encode(m.MAVLink_mission_request_partial_list_message(1, 1, 0, -1))
+    free.vehicle.receive(1000 * ask, GROUND, free.now)
+    before = len(free.received)
+    free.collect()
+    sent = sum(found.message.get_type() == "MISSION_ITEM_INT" for found in free.received[before:])
+    assert sent == VehicleLinkSettings().replies_max <= len(built) < sent + LIMITS.partial_list_max
 
 
 @pytest.mark.parametrize("plan_type", [*PlanType, m.MAV_MISSION_TYPE_ALL])

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as m
+import pytest
 from free_bench import FreeBench, item, mode
 from mission_ground import ACCEPTED, Downloader, Uploader, placeless, same
 
@@ -55,62 +57,64 @@ def reached(bench: FreeBench) -> list[int]:
     return list(dict.fromkeys(found.seq for *_, found in bench.messages if found.get_type() == "MISSION_ITEM_REACHED"))
 
 
+@pytest.fixture
+def standing() -> Iterator[FreeBench]:
+    with FreeBench() as bench:
+        bench.run(0.5)
+        yield bench
+
+
+@pytest.fixture
+def on_mission(standing: FreeBench) -> FreeBench:
+    """A vehicle that flies PLAN, and has taken off."""
+    upload(standing, *PLAN)
+    start(standing)
+    assert standing.run(30.0, lambda: reached(standing) == [0])
+    return standing
+
+
 def test_every_command_that_is_taken_as_flown_is_flown() -> None:
     assert set(COMMANDS) == {*FLOWN_TO, *DONE}
 
 
-def test_uploaded_mission_is_flown_and_its_progress_sent() -> None:
-    with FreeBench() as bench:
-        bench.run(0.5)
-        assert upload(bench, *PLAN) == ACCEPTED
-        download = Downloader()
-        transfer(bench, download)
-        assert same(download.items, PLAN)
-        start(bench)
-        bench.run(1.0)
-        assert current(bench) == (0, m.MISSION_STATE_ACTIVE)
-        assert bench.run(60.0, lambda: not bench.armed())
-        bench.run(1.1)
-        assert reached(bench) == [0, 1, 2, 3]
-        assert current(bench)[1] == m.MISSION_STATE_COMPLETE
+def test_uploaded_mission_is_flown_and_its_progress_sent(standing: FreeBench) -> None:
+    assert upload(standing, *PLAN) == ACCEPTED
+    download = Downloader()
+    transfer(standing, download)
+    assert same(download.items, PLAN)
+    start(standing)
+    standing.run(1.0)
+    assert current(standing) == (0, m.MISSION_STATE_ACTIVE)
+    assert standing.run(60.0, lambda: not standing.armed())
+    standing.run(1.1)
+    assert reached(standing) == [0, 1, 2, 3]
+    assert current(standing)[1] == m.MISSION_STATE_COMPLETE
 
 
-def test_another_mission_is_uploaded_and_an_item_chosen_in_flight() -> None:
-    with FreeBench() as bench:
-        bench.run(0.5)
-        upload(bench, *PLAN)
-        start(bench)
-        assert bench.run(30.0, lambda: reached(bench) == [0])
-        others = [item(WAYPOINT, 0.0, -6.0, 4.0), item(WAYPOINT, 0.0, 0.0, 8.0), item(WAYPOINT, 30.0, 0.0, 8.0)]
-        assert upload(bench, *others) == ACCEPTED
-        bench.run(0.5)
-        assert current(bench) == (0, m.MISSION_STATE_ACTIVE)
-        bench.send(m.MAVLink_mission_set_current_message(1, 1, 1))
-        bench.messages.clear()
-        assert bench.run(30.0, lambda: reached(bench) == [1])
-        assert abs(bench.position()[2] + 8.0) < 1.5
-        assert bench.command(*mode(px4.AutoMode.LOITER)) == m.MAV_RESULT_ACCEPTED
-        bench.run(1.1)
-        assert current(bench)[1] == m.MISSION_STATE_PAUSED
+def test_another_mission_is_uploaded_and_an_item_chosen_in_flight(on_mission: FreeBench) -> None:
+    others = [item(WAYPOINT, 0.0, -6.0, 4.0), item(WAYPOINT, 0.0, 0.0, 8.0), item(WAYPOINT, 30.0, 0.0, 8.0)]
+    assert upload(on_mission, *others) == ACCEPTED
+    on_mission.run(0.5)
+    assert current(on_mission) == (0, m.MISSION_STATE_ACTIVE)
+    on_mission.send(m.MAVLink_mission_set_current_message(1, 1, 1))
+    on_mission.messages.clear()
+    assert on_mission.run(30.0, lambda: reached(on_mission) == [1])
+    assert abs(on_mission.position()[2] + 8.0) < 1.5
+    assert on_mission.command(*mode(px4.AutoMode.LOITER)) == m.MAV_RESULT_ACCEPTED
+    on_mission.run(1.1)
+    assert current(on_mission)[1] == m.MISSION_STATE_PAUSED
 
 
-def test_mission_cleared_in_flight_leaves_the_vehicle_where_it_is() -> None:
-    with FreeBench() as bench:
-        bench.run(0.5)
-        upload(bench, *PLAN)
-        start(bench)
-        assert bench.run(30.0, lambda: reached(bench) == [0])
-        bench.send(m.MAVLink_mission_clear_all_message(1, 1, m.MAV_MISSION_TYPE_ALL))
-        place = bench.position().copy()
-        bench.run(10.0)
-        assert current(bench)[1] == m.MISSION_STATE_NO_MISSION
-        assert bench.armed() and abs(bench.position() - place).max() < 4.0
-        assert bench.mode_of() == "AUTO.LOITER"
+def test_mission_cleared_in_flight_leaves_the_vehicle_where_it_is(on_mission: FreeBench) -> None:
+    on_mission.send(m.MAVLink_mission_clear_all_message(1, 1, m.MAV_MISSION_TYPE_ALL))
+    place = on_mission.position().copy()
+    on_mission.run(10.0)
+    assert current(on_mission)[1] == m.MISSION_STATE_NO_MISSION
+    assert on_mission.armed() and abs(on_mission.position() - place).max() < 4.0
+    assert on_mission.mode_of() == "AUTO.LOITER"
 
 
-def test_mission_that_cannot_be_started_is_refused_at_its_start() -> None:
-    with FreeBench() as bench:
-        bench.run(0.5)
-        assert upload(bench, item(WAYPOINT, 20_000.0, 0.0, 4.0)) == ACCEPTED
-        assert bench.command(*mode(px4.AutoMode.MISSION)) != m.MAV_RESULT_ACCEPTED
-        assert not bench.armed()
+def test_mission_that_cannot_be_started_is_refused_at_its_start(standing: FreeBench) -> None:
+    assert upload(standing, item(WAYPOINT, 20_000.0, 0.0, 4.0)) == ACCEPTED
+    assert standing.command(*mode(px4.AutoMode.MISSION)) != m.MAV_RESULT_ACCEPTED
+    assert not standing.armed()

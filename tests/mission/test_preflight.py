@@ -126,7 +126,10 @@ def test_vehicle_that_is_heard_without_the_payload_unit_is_requested_to_forward_
     assert links[0].requests.due(NOW + 0.1) == []
     assert len(links[0].requests.due(NOW + 0.6)) == 2
     links[0].payload_received_at = NOW
-    assert connected(links) == "" and links[0].requests.due(NOW + 2.0) == []
+    assert connected(links) == ""
+    # To the vehicles themselves go the requests of what the log is to have, once.
+    asked = [(m.get_type(), m.target_system) for link in links for m in link.requests.due(NOW + 2.0)]
+    assert asked == [(kind, link.system_id) for link in links for kind in ("COMMAND_LONG", "PARAM_REQUEST_LIST")]
 
 
 def test_parameters_are_requested_from_all_and_the_time_of_the_first_attempt_is_kept(links):

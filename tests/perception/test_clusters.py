@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from idc_controller.perception.clusters import Segmentation, frames
+from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.range_sensors import RayPattern
-from idc_controller.perception.scan_placement import PlacedScan
 
 PATTERN = RayPattern(500, math.radians(-70.0), math.radians(30.0))
 SPACING, CUT, SIZE = PATTERN.spacing, 9.8, 3.2

@@ -10,7 +10,7 @@ from obstacle_scene import HERE, Scene, map_of, moving_tracks, pole, run, sphere
 
 from idc_controller.perception.motion_evidence import Frame, MotionEvidence, PartOfScan
 from idc_controller.perception.motion_evidence_kernels import Places, count_rays
-from idc_controller.perception.scan_placement import PlacedScan
+from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.surfaces.points import SurfacePoints
 

@@ -11,8 +11,9 @@ from range_scene import return_variance
 from gcs.config import RangeSensorConfig
 from idc_controller.estimation.measurements import Attitude, Position
 from idc_controller.geometry.shapes import Pole, Wall
+from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.range_sensors import RayPattern, SensorModel
-from idc_controller.perception.scan_placement import PlacedScan, Returns, ScanEnd, ScanPlacement, SensorRays
+from idc_controller.perception.scan_placement import Returns, ScanEnd, ScanPlacement, SensorRays
 from idc_controller.perception.scan_placement_kernels import (
     free_ends,
     placed_returns,

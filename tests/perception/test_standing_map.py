@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from range_scene import Box, Pole, Sensor, Sphere, is_occupied, is_seen_free, occupied
 
-from idc_controller.perception.scan_placement import PlacedScan
+from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.standing_map import StandingMap
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from range_scene import is_occupied, is_seen_free, occupied
 
-from idc_controller.perception.scan_placement import PlacedScan
+from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.standing_map import StandingMap
 

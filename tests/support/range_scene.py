@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from idc_controller.perception.scan_placement import PlacedScan
+from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.voxel_kernels import BLOCKS, EDGE, HELD
 
 RANGE_SIGMA, POSITION_SIGMA, ATTITUDE_SIGMA = 0.05, 0.03, math.radians(0.5)

@@ -94,8 +94,8 @@ class ServiceBench:
         self.intervals = {(COMPONENT, mavlink.MAVLINK_MSG_ID_HEARTBEAT): 1.0}
         self.peer = Peer(SENDER, [(SYSTEM, COMPONENT)], self.intervals, settings)
         self.peer.answered = True
-        streams = StreamRequests(COMPONENT, self, self, settings)
         self.dispatcher = Dispatcher()
+        streams = StreamRequests(COMPONENT, self, self, settings, self.dispatcher.requests)
         CommandServer(self.aircraft, self, self, streams, self.parameters).register(self.dispatcher)
         ParameterServer(self.parameters, self).register(self.dispatcher)
         FileServices().register(self.dispatcher)

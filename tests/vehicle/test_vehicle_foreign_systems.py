@@ -56,10 +56,49 @@ def test_excessive_requests_are_rate_limited(flying: Bench) -> None:
     flying.collect()
     flying.inbox.clear()
     for _ in range(1000):
-        flying.send(mavlink.MAVLink_param_request_list_message(1, 1), STRANGER)
+        flying.send(mavlink.MAVLink_param_request_read_message(1, 1, b"COM_DL_LOSS_T", -1), STRANGER)
     flying.collect()
     assert len(flying.got("PARAM_VALUE", STRANGER)) == VehicleLinkSettings().replies_max
     assert flying.result(command(512, mavlink.MAVLINK_MSG_ID_HOME_POSITION), STRANGER) == ACCEPTED
+
+
+def test_lists_of_parameters_requested_at_the_grounds_address_do_not_fill_its_link(flying: Bench) -> None:
+    def sent_in_a_second(requests: int) -> int:
+        flying.collect()
+        flying.datagrams.clear()
+        for _ in range(50):
+            for _ in range(requests):
+                flying.send(mavlink.MAVLink_param_request_list_message(1, 1), GROUND, 42)
+            flying.run(0.02)
+        return sum(len(datagram) for _, datagram, address in flying.datagrams if address == GROUND)
+
+    usual = sent_in_a_second(0)
+    lists = len(flying.vehicle.parameters) + 1
+    assert usual < sent_in_a_second(20) < usual + 6 * 37 * lists
+    # Who asks again later gets it.
+    flying.run(0.3)
+    flying.inbox.clear()
+    flying.send(mavlink.MAVLink_param_request_list_message(1, 1))
+    flying.collect()
+    assert len(flying.got("PARAM_VALUE")) == lists
+
+
+def test_heartbeat_with_a_forged_address_draws_no_more_than_it_sent() -> None:
+    """Whatever the vehicle has to say meanwhile: streams, changes, texts, parameters that another has set."""
+    bench = Bench(clients_answer=False, clients={GROUND: True})
+    bench.run(0.1)
+    bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3))
+    bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3), STRANGER)
+    for _ in range(3):
+        bench.send(mavlink.MAVLink_param_set_message(1, 1, b"COM_OF_LOSS_T", 0.7, mavlink.MAV_PARAM_TYPE_REAL32))
+        bench.send(mavlink.MAVLink_param_set_message(1, 1, b"NO_SUCH", 0.7, mavlink.MAV_PARAM_TYPE_REAL32))
+        assert bench.result(command(400, 1)) == ACCEPTED
+        assert bench.result(command(400, 0)) == ACCEPTED
+        bench.run(1.0)
+    sent = [datagram for _, datagram, address in bench.datagrams if address == STRANGER]
+    heartbeat = 21
+    assert len(b"".join(sent)) == heartbeat
+    assert len(bench.got("PARAM_VALUE")) >= 3  # the ground was told all of it
 
 
 def test_second_ground_may_take_control_after_setpoint_timeout(flying: Bench) -> None:

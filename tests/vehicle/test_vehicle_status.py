@@ -9,7 +9,7 @@ import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
 from onboard import step_alone
-from vehicle_bench import Bench
+from vehicle_bench import ACCEPTED, Bench, command
 
 from gcs.mavlink import px4
 from vehicle_sim.world.range_sensor import RangeSample
@@ -199,3 +199,12 @@ def test_points_of_a_scan_have_their_ranges_and_no_object(still: Bench) -> None:
     for message in sent:
         assert (message.time_boot_ms, message.min_distance, message.max_distance) == (750, 0.25, 12.0)
         assert message.sensor_type == mavlink.MAV_DISTANCE_SENSOR_LASER and message.frame == mavlink.MAV_FRAME_BODY_FRD
+
+
+def test_requested_scan_comes_whole(bench: Bench) -> None:
+    points = np.array([[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, -3.0]])
+    bench.vehicle.take_scan(RangeSample(bench.now, 12.0, points))
+    bench.run(0.02)
+    bench.inbox.clear()
+    assert bench.result(command(512, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D)) == ACCEPTED
+    assert [(m.x, m.y, m.z) for m in bench.got("OBSTACLE_DISTANCE_3D")] == [tuple(point) for point in points]

@@ -24,8 +24,9 @@ from gcs.numerics import differences
 from gcs.record.incomplete import INCOMPLETE, IncompleteRecords, in_one_line
 from gcs.record.run_folder import NewRunFolder, check_run_folder, write_manifest
 from vehicle_sim.app.arguments import ClientPorts
-from vehicle_sim.app.drivers import LOG, LockstepDriver, RealTimeDriver, SwarmSockets, url
+from vehicle_sim.app.drivers import LOG, LockstepDriver, RealTimeDriver
 from vehicle_sim.app.ending import Ending
+from vehicle_sim.app.swarm_sockets import SwarmSockets, url
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.engine_messages import check_display, messages_of_engine_aside
 from vehicle_sim.world.truth_log import TruthLog

@@ -14,7 +14,7 @@ from vehicle_sim.autopilot.setpoint_stream import Setpoint
 
 def enter_mode(state: FlightState, custom_mode: int, now: float) -> Answer:
     """Enter any mode but OFFBOARD, which needs set-points; see :func:`enter_offboard`."""
-    enter = _ENTRY.get(custom_mode)
+    enter = ENTRY.get(custom_mode)
     if enter is None:
         return denied(f"{px4.mode_name(custom_mode)} denied: no such mode")
     return enter(state, custom_mode, now)
@@ -72,7 +72,7 @@ def _of_team_only(state: FlightState, custom_mode: int, now: float) -> Answer:
     return team_only(px4.mode_name(custom_mode))
 
 
-_ENTRY: dict[int, Callable[[FlightState, int, float], Answer]] = {
+ENTRY: dict[int, Callable[[FlightState, int, float], Answer]] = {
     px4.MODE_HOLD: _hold,
     px4.MODE_LAND: _land,
     px4.MODE_MANUAL: _manual,

@@ -29,7 +29,7 @@ def services_page() -> str:
     )
     commands = "\n".join(
         f"| {number} | {mavlink.enums['MAV_CMD'][number].name} | {_meaning(run)} |"
-        for number, run in sorted(vehicle.commands.handlers.items())
+        for number, run in sorted(vehicle.dispatcher.commands.items())
     )
     modes = "\n".join(
         f"| {px4.MODE_LABELS[mode]} | `{px4.mode_name(mode)}` | {mode} | {_standard_mode(mode)} |"

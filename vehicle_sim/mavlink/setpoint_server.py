@@ -76,8 +76,8 @@ class PositionSetpointServer(SetpointServer):
         self._frame = frame
 
     def register(self, dispatcher: Dispatcher) -> None:
-        """Take the messages of this service."""
-        super().register(dispatcher)
+        """Take the messages of this service; a stop plan is for a vehicle of a team."""
+        dispatcher.register_fields(mavlink.MAVLink_set_attitude_target_message, self._on_setpoint)
         dispatcher.register_fields(mavlink.MAVLink_set_position_target_local_ned_message, self._on_local)
         dispatcher.register_fields(mavlink.MAVLink_set_position_target_global_int_message, self._on_global)
 

@@ -119,24 +119,21 @@ class Vehicle:
         else:
             self._setpoints = SetpointServer(self.autopilot, owner, clock)
             self.aircraft = CoupledAircraft(self.autopilot, owner)
-        self._dispatcher = Dispatcher()
-        # A further protocol registers its messages here.
-        self._setpoints.register(self._dispatcher)
-        LinkServices(clock).register(self._dispatcher)
+        self.dispatcher = Dispatcher()
+        """All that it does for others."""
+        # A further protocol registers its messages and commands here.
+        self._setpoints.register(self.dispatcher)
+        LinkServices(clock).register(self.dispatcher)
         self._missions = MissionServer(system_id, plans or CoupledPlans(), owner, self._peers, link.missions)
-        self._missions.register(self._dispatcher)
+        self._missions.register(self.dispatcher)
         self.telemetry.builders.update(self._missions.builders)
-        streams, of_payload_unit = (
-            StreamRequests(component, self.telemetry, owner, link)
-            for component in (px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT)
-        )
-        self.commands = CommandServer(self.aircraft, owner, self.telemetry, streams, self.parameters)
-        self.commands.register(self._dispatcher)
-        self.commands.add(mavlink.MAV_CMD_DO_SET_MISSION_CURRENT, self._missions.do_set_mission_current)
+        streams = StreamRequests(px4.AUTOPILOT_COMPONENT, self.telemetry, owner, link, self.dispatcher.requests)
+        of_payload_unit = StreamRequests(px4.PAYLOAD_UNIT_COMPONENT, self.telemetry, owner, link)
+        CommandServer(self.aircraft, owner, self.telemetry, streams, self.parameters).register(self.dispatcher)
         self._other_components = OtherComponents(own, own if free else payload_unit, of_payload_unit)
-        ParameterServer(self.parameters, owner, self._peers).register(self._dispatcher)
-        FileServices().register(self._dispatcher)
-        UnservedInputs(system_id, STICKS if free else {**STICKS, **TEAM_SETPOINTS}).register(self._dispatcher)
+        ParameterServer(self.parameters, owner, self._peers).register(self.dispatcher)
+        FileServices().register(self.dispatcher)
+        UnservedInputs(system_id, STICKS if free else {**STICKS, **TEAM_SETPOINTS}).register(self.dispatcher)
 
     @property
     def refused_setpoints(self) -> int:
@@ -194,7 +191,7 @@ class Vehicle:
             if request is None or request.component != component or request.system != system:
                 request = Request((sender, system), component, peer, now)
             if received.is_for(self.system_id, px4.AUTOPILOT_COMPONENT):
-                self._dispatcher.dispatch(received, request)
+                self.dispatcher.dispatch(received, request)
             else:
                 self._other_components.handle(received, request)
 

@@ -1,6 +1,6 @@
 """MAVLink commands to an aircraft: who may send them, that each is done once, and the answer."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
@@ -9,7 +9,7 @@ from gcs.mavlink.messages import BROADCAST
 from gcs.mavlink.newer_messages import COMMAND_CANCEL, NEWER
 from gcs.mavlink.services.aircraft import Aircraft, Control, MessageSource, Sender
 from gcs.mavlink.services.answer import UNSUPPORTED, Answer, denied
-from gcs.mavlink.services.dispatcher import Command, Dispatcher, Request
+from gcs.mavlink.services.dispatcher import Command, CommandHandler, Dispatcher, Request
 from gcs.mavlink.services.flight_commands import FlightCommands
 from gcs.mavlink.services.modes import ModeCommands
 from gcs.mavlink.services.parameter_table import ParameterTable
@@ -46,7 +46,7 @@ class _Done(NamedTuple):
 
 
 class CommandServer:
-    """COMMAND_LONG, COMMAND_INT, COMMAND_CANCEL and SET_MODE; ``handlers`` by MAV_CMD, others are unsupported."""
+    """COMMAND_LONG, COMMAND_INT, COMMAND_CANCEL and SET_MODE; a command that no service has taken is unsupported."""
 
     def __init__(
         self,
@@ -58,26 +58,23 @@ class CommandServer:
     ) -> None:
         self._aircraft = aircraft
         self._control = control
-        self._modes = ModeCommands(aircraft, control)
-        streams.answer_with(self._modes.REQUESTED, self._modes.send_available)
-        self.handlers: Mapping[int, Callable[[Command, Request], Answer]] = {
-            **FlightCommands(aircraft, source).handlers,
-            **self._modes.handlers,
-            **SystemCommands(aircraft, parameters, streams).handlers,
-            **streams.handlers,
-        }
+        self._services = (
+            FlightCommands(aircraft, source),
+            ModeCommands(aircraft, control),
+            SystemCommands(aircraft, parameters, streams),
+            streams,
+        )
+        self._handlers: Mapping[int, CommandHandler] = {}
         self._done: dict[tuple[Sender, int], _Done] = {}
 
     def register(self, dispatcher: Dispatcher) -> None:
-        """Take the messages of this service."""
+        """Take the messages and commands of this service, and carry out those that others take."""
         dispatcher.register(mavlink.MAVLink_command_long_message, self._on_command)
         dispatcher.register(mavlink.MAVLink_command_int_message, self._on_command)
         dispatcher.register_fields(NEWER[COMMAND_CANCEL], self._on_cancel)
-        self._modes.register(dispatcher)
-
-    def add(self, command: int, run: Callable[[Command, Request], Answer]) -> None:
-        """Carry out a command of another service."""
-        self.handlers = {**self.handlers, command: run}
+        for service in self._services:
+            service.register(dispatcher)
+        self._handlers = dispatcher.commands
 
     def _on_command(self, message: Command, request: Request) -> None:
         is_information = message.command in INFORMATION
@@ -93,7 +90,7 @@ class CommandServer:
         self._acknowledge(message.command, answer, request)
 
     def _answer(self, message: Command, request: Request, is_information: bool) -> Answer:
-        run = self.handlers.get(message.command)
+        run = self._handlers.get(message.command)
         if is_information and run is not None:
             return run(message, request)
         if self._control.is_stranger(request.sender, request.now):

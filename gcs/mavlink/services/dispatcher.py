@@ -1,6 +1,6 @@
-"""The services of an aircraft by the messages that they handle."""
+"""The services of an aircraft: one table of the messages that they handle, one of the commands."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from operator import attrgetter
 from typing import Any, NamedTuple, TypeVar
 
@@ -8,6 +8,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.messages import Message, Received
 from gcs.mavlink.services.aircraft import Sender
+from gcs.mavlink.services.answer import Answer
 from gcs.mavlink.services.peer import Peer
 
 M = TypeVar("M", bound=Message)
@@ -29,27 +30,35 @@ class Request(NamedTuple):
         return self.sender[1]
 
 
+CommandHandler = Callable[[Command, Request], Answer]
+"""Carries out a command, and returns the answer."""
+
+
 class Dispatcher:
-    """The services of an aircraft by the class of the messages they handle."""
+    """All that the services of an aircraft do for others; what is taken out of a table is not served."""
 
     def __init__(self) -> None:
-        self._handlers: dict[type[Message], tuple[Callable[..., None], Callable[[Received], Any]]] = {}
-        """The handler of each class, and what of a message is handed to it."""
+        self.messages: dict[type[Message], tuple[Callable[..., None], Callable[[Received], Any]]] = {}
+        """By the class of a message its handler, and what of the message is handed to it."""
+        self.commands: dict[int, CommandHandler] = {}
+        """By MAV_CMD."""
+        self.requests: dict[int, CommandHandler] = {}
+        """By the id of a message what answers its MAV_CMD_REQUEST_MESSAGE, where the request has parameters."""
 
     def register(self, kind: type[M], handler: Callable[[M, Request], None]) -> None:
         """Hand every message of a class to ``handler``."""
-        self._handlers[kind] = handler, attrgetter("message")
+        self.messages[kind] = handler, attrgetter("message")
 
     def register_fields(self, kind: type[Message], handler: Callable[[tuple[Any, ...], Request], None]) -> None:
         """Hand the fields of every message of a class, in the order of the wire, to ``handler``."""
-        self._handlers[kind] = handler, attrgetter("fields")
+        self.messages[kind] = handler, attrgetter("fields")
 
-    def serves(self, kind: type[Message]) -> bool:
-        """Return True if messages of a class are handed to somebody."""
-        return kind in self._handlers
+    def register_commands(self, handlers: Mapping[int, CommandHandler]) -> None:
+        """Have commands carried out by their MAV_CMD."""
+        self.commands.update(handlers)
 
     def dispatch(self, received: Received, request: Request) -> None:
         """Hand a message to its service; one without a service is ignored."""
-        if (service := self._handlers.get(received.layout.kind)) is not None:
+        if (service := self.messages.get(received.layout.kind)) is not None:
             handler, part = service
             handler(part(received), request)

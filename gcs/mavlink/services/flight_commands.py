@@ -1,7 +1,6 @@
 """Commands that an aircraft flies: arming, take-off, go-to, speed, missions, return, landing."""
 
 import math
-from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
@@ -10,7 +9,7 @@ from gcs.mavlink import px4
 from gcs.mavlink.layout import PackedRun
 from gcs.mavlink.services.aircraft import Aircraft, MessageSource, Reposition
 from gcs.mavlink.services.answer import ACCEPTED, UNSUPPORTED_FRAME, Answer, denied
-from gcs.mavlink.services.dispatcher import Command, Request
+from gcs.mavlink.services.dispatcher import Command, CommandHandler, Dispatcher, Request
 from gcs.mavlink.services.streams import whole
 
 _HOME = px4.AUTOPILOT_COMPONENT, mavlink.MAVLINK_MSG_ID_HOME_POSITION
@@ -34,23 +33,28 @@ class _Place(NamedTuple):
 
 
 class FlightCommands:
-    """What each command asks the aircraft to do; ``handlers`` by MAV_CMD."""
+    """What each command asks the aircraft to do."""
 
     def __init__(self, aircraft: Aircraft, source: MessageSource) -> None:
         """``source`` has the place of home."""
         self._aircraft = aircraft
         self._source = source
-        self.handlers: Mapping[int, Callable[[Command, Request], Answer]] = {
-            mavlink.MAV_CMD_COMPONENT_ARM_DISARM: self._arm_disarm,
-            mavlink.MAV_CMD_DO_FLIGHTTERMINATION: self._terminate,
-            mavlink.MAV_CMD_NAV_TAKEOFF: self._take_off,
-            mavlink.MAV_CMD_NAV_LAND: self._entering(px4.MODE_LAND),
-            mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: self._entering(px4.MODE_RETURN),
-            mavlink.MAV_CMD_DO_REPOSITION: self._reposition,
-            mavlink.MAV_CMD_DO_CHANGE_SPEED: self._change_speed,
-            mavlink.MAV_CMD_MISSION_START: self._start_mission,
-            mavlink.MAV_CMD_DO_PAUSE_CONTINUE: self._pause_continue,
-        }
+
+    def register(self, dispatcher: Dispatcher) -> None:
+        """Take the commands of this service."""
+        dispatcher.register_commands(
+            {
+                mavlink.MAV_CMD_COMPONENT_ARM_DISARM: self._arm_disarm,
+                mavlink.MAV_CMD_DO_FLIGHTTERMINATION: self._terminate,
+                mavlink.MAV_CMD_NAV_TAKEOFF: self._take_off,
+                mavlink.MAV_CMD_NAV_LAND: self._entering(px4.MODE_LAND),
+                mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: self._entering(px4.MODE_RETURN),
+                mavlink.MAV_CMD_DO_REPOSITION: self._reposition,
+                mavlink.MAV_CMD_DO_CHANGE_SPEED: self._change_speed,
+                mavlink.MAV_CMD_MISSION_START: self._start_mission,
+                mavlink.MAV_CMD_DO_PAUSE_CONTINUE: self._pause_continue,
+            }
+        )
 
     def _arm_disarm(self, message: Command, request: Request) -> Answer:
         """Arm (param1 1) or disarm (0); param2 21196 skips checks."""
@@ -112,7 +116,7 @@ class FlightCommands:
             return self._aircraft.resume(request.now)
         return denied(f"Pause denied: param1 {message.param1:g} is neither 0 nor 1", 1)
 
-    def _entering(self, mode: int) -> Callable[[Command, Request], Answer]:
+    def _entering(self, mode: int) -> CommandHandler:
         """Return what carries out a command that enters a mode."""
 
         def enter(message: Command, request: Request) -> Answer:

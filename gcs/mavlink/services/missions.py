@@ -56,7 +56,7 @@ class MissionServer:
     # Messages
 
     def register(self, dispatcher: Dispatcher) -> None:
-        """Take the messages of this service."""
+        """Take the messages of this service, and its command."""
         m = mavlink
         self._take(dispatcher, m.MAVLink_mission_request_list_message, self._on_request_list)
         self._take(dispatcher, m.MAVLink_mission_request_int_message, self._on_request)
@@ -69,6 +69,7 @@ class MissionServer:
         self._take(dispatcher, m.MAVLink_mission_ack_message, self._on_ack)
         self._take(dispatcher, m.MAVLink_mission_clear_all_message, self._on_clear_all)
         self._take(dispatcher, m.MAVLink_mission_set_current_message, self._on_set_current)
+        dispatcher.register_commands({mavlink.MAV_CMD_DO_SET_MISSION_CURRENT: self._do_set_current})
 
     def _take(self, dispatcher: Dispatcher, kind: type[M], handler: Callable[[M, Request], None]) -> None:
         def take_own(message: Any, request: Request) -> None:
@@ -91,6 +92,8 @@ class MissionServer:
     def _on_request_partial_list(
         self, message: mavlink.MAVLink_mission_request_partial_list_message, request: Request
     ) -> None:
+        if request.peer.is_full:
+            return  # the items would be dropped
         if (plan_type := _plan_type(message, request)) is not None:
             self._download.on_request_partial(plan_type, message.start_index, message.end_index, request)
 
@@ -148,8 +151,8 @@ class MissionServer:
             request.peer.send_statustext(answer.text)
         request.peer.reply_packed(*self._current(request.now))  # the answer, be it the old one
 
-    def do_set_mission_current(self, message: Command, request: Request) -> Answer:
-        """Carry out MAV_CMD_DO_SET_MISSION_CURRENT, whose first parameter -1 stands for the current item."""
+    def _do_set_current(self, message: Command, request: Request) -> Answer:
+        """Go on with an item of the mission (param1; -1: the current one); param2 1 resets the mission."""
         number = self._store.progress().current if message.param1 == -1.0 else whole(message.param1, 1 << 16)
         if number is None:
             return denied(f"Mission item denied: {message.param1:g} is no item")

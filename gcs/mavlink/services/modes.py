@@ -1,7 +1,6 @@
 """Modes: entered on command, and reported by AVAILABLE_MODES and CURRENT_MODE as by PX4."""
 
 import math
-from collections.abc import Callable, Mapping
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -18,24 +17,24 @@ _ADVANCED = (px4.MODE_OFFBOARD,)
 
 
 class ModeCommands:
-    """DO_SET_MODE, DO_SET_STANDARD_MODE and SET_MODE, and the list of modes; ``handlers`` by MAV_CMD."""
-
-    REQUESTED = newer_messages.AVAILABLE_MODES
-    """The message that :meth:`send_available` answers with."""
+    """DO_SET_MODE, DO_SET_STANDARD_MODE and SET_MODE, and AVAILABLE_MODES on request."""
 
     def __init__(self, aircraft: Aircraft, control: Control) -> None:
         self._aircraft = aircraft
         self._control = control
-        self.handlers: Mapping[int, Callable[[Command, Request], Answer]] = {
-            mavlink.MAV_CMD_DO_SET_MODE: self._set_mode,
-            mavlink.MAV_CMD_DO_SET_STANDARD_MODE: self._set_standard_mode,
-        }
 
     def register(self, dispatcher: Dispatcher) -> None:
-        """Take the messages of this service."""
+        """Take the messages, commands and requests of this service."""
         dispatcher.register(mavlink.MAVLink_set_mode_message, self._on_set_mode)
+        dispatcher.register_commands(
+            {
+                mavlink.MAV_CMD_DO_SET_MODE: self._set_mode,
+                mavlink.MAV_CMD_DO_SET_STANDARD_MODE: self._set_standard_mode,
+            }
+        )
+        dispatcher.requests[newer_messages.AVAILABLE_MODES] = self._send_available
 
-    def send_available(self, message: Command, request: Request) -> Answer:
+    def _send_available(self, message: Command, request: Request) -> Answer:
         """Send AVAILABLE_MODES of one mode (param2, from 1), or of all (0)."""
         modes = self._aircraft.modes
         index = 0 if math.isnan(message.param2) else whole(message.param2, len(modes) + 1)

@@ -1,13 +1,13 @@
 """Commands that reach an aircraft but are not its own: to a device whose messages it forwards, or to what is absent."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.messages import BROADCAST, Received
 from gcs.mavlink.services.answer import UNSUPPORTED, Answer
-from gcs.mavlink.services.dispatcher import Command, Request
+from gcs.mavlink.services.dispatcher import CommandHandler, Request
 from gcs.mavlink.services.streams import StreamRequests
 
 _COMMANDS = (mavlink.MAVLINK_MSG_ID_COMMAND_LONG, mavlink.MAVLINK_MSG_ID_COMMAND_INT)
@@ -20,7 +20,7 @@ class OtherComponents:
         """``own`` system and component, and those of the ``device``, with the ``streams`` of its messages."""
         self._own = own
         self._device = device
-        self._of_device: Mapping[int, Callable[[Command, Request], Answer]] = streams.handlers
+        self._of_device: Mapping[int, CommandHandler] = streams.handlers
 
     def handle(self, received: Received, request: Request) -> None:
         """Carry out or refuse a command; the system that it is for answers. What is for nobody here is ignored."""

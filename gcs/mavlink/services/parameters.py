@@ -18,6 +18,8 @@ _HASH = "_HASH_CHECK"
 """By this name PX4 reports the hash of all parameters, so that a ground may use those that it has kept."""
 _NO_INDEX = 0xFFFF
 _HASH_SIZE = 4
+_LIST_INTERVAL = 0.2
+"""s; the list that is requested again sooner is on its way: repeated requests must not fill the link."""
 
 
 class ParameterServer:
@@ -51,6 +53,9 @@ class ParameterServer:
             request.peer.reply(self._value(parameter.name))
 
     def _on_list(self, message: mavlink.MAVLink_param_request_list_message, request: Request) -> None:
+        if request.now - request.peer.parameters_sent_at < _LIST_INTERVAL:
+            return
+        request.peer.parameters_sent_at = request.now
         self._send_hash(request)
         for parameter in self._table:
             request.peer.reply(self._value(parameter.name))

@@ -93,6 +93,8 @@ class Peer:
 
         Anybody can write any address on a datagram, and would else have the streams sent there.
         """
+        self.parameters_sent_at = -math.inf
+        """When the list of parameters was sent here last (s)."""
         self._received = self._sent = 0
         """Bytes from and to it before it has answered."""
         self.next_due = -math.inf
@@ -106,6 +108,11 @@ class Peer:
 
     def _new(self, key: MessageKey, interval: float) -> Stream:
         return Stream(*key, interval, self._offsets.get(key, 0.0) if interval == self._defaults.get(key) else 0.0)
+
+    @property
+    def is_full(self) -> bool:
+        """True if further answers are dropped until the next datagrams."""
+        return len(self._replies) >= self._settings.replies_max
 
     def interval(self, message_id: int, component: int = _AUTOPILOT) -> float:
         """Return the interval (s) of a message on this link; infinity: it is not streamed."""
@@ -144,8 +151,16 @@ class Peer:
 
     def reply_packed(self, *messages: Packed, component: int = _AUTOPILOT) -> None:
         """Send messages with the next datagrams, as :meth:`reply` does."""
-        if len(self._replies) < self._settings.replies_max:
+        if not self.is_full:
             self._replies += [self._codecs[component].frame(message) for message in messages]
+            self.next_due = -math.inf
+
+    def reply_built(self, built: Built, component: int = _AUTOPILOT) -> None:
+        """Send what was built of one message with the next datagrams, as :meth:`reply` does."""
+        if not isinstance(built, PackedRun):
+            self.reply_packed(*built, component=component)
+        elif not self.is_full:
+            self._replies += self._codecs[component].frames(built)
             self.next_due = -math.inf
 
     def send_statustext(self, text: str, severity: int = mavlink.MAV_SEVERITY_WARNING) -> None:

@@ -1,14 +1,15 @@
 """Requests of one message or of its stream."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from types import MappingProxyType
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.layout import LAYOUTS
 from gcs.mavlink.services.aircraft import Control, MessageSource
 from gcs.mavlink.services.answer import ACCEPTED, UNSUPPORTED, Answer, denied, rejected_for_now
-from gcs.mavlink.services.dispatcher import Command, Request
+from gcs.mavlink.services.dispatcher import Command, CommandHandler, Dispatcher, Request
 from gcs.mavlink.settings import PeerSettings
 
 _STOPPED, _NOT_AVAILABLE = -1, 0
@@ -19,23 +20,31 @@ _INTERVAL_MAX = 3600.0  # s
 class StreamRequests:
     """Commands about the messages of one component; ``handlers`` by MAV_CMD. What is accepted is sent."""
 
-    def __init__(self, component: int, source: MessageSource, control: Control, settings: PeerSettings) -> None:
+    def __init__(
+        self,
+        component: int,
+        source: MessageSource,
+        control: Control,
+        settings: PeerSettings,
+        requests: Mapping[int, CommandHandler] = MappingProxyType({}),
+    ) -> None:
+        """``requests``: see :attr:`.Dispatcher.requests`."""
         self._component = component
         self._source = source
         self._control = control
         self._interval_min = settings.interval_min
-        self._special: dict[int, Callable[[Command, Request], Answer]] = {}
-        self.handlers: Mapping[int, Callable[[Command, Request], Answer]] = {
+        self._requests = requests
+        self.handlers: Mapping[int, CommandHandler] = {
             mavlink.MAV_CMD_REQUEST_MESSAGE: self._request_message,
             mavlink.MAV_CMD_SET_MESSAGE_INTERVAL: self._set_message_interval,
             mavlink.MAV_CMD_GET_MESSAGE_INTERVAL: self._get_message_interval,
         }
 
-    def answer_with(self, message_id: int, send: Callable[[Command, Request], Answer]) -> None:
-        """Let ``send`` answer requests of a message that is not streamed, because they have parameters."""
-        self._special[message_id] = send
+    def register(self, dispatcher: Dispatcher) -> None:
+        """Take the commands of this service."""
+        dispatcher.register_commands(self.handlers)
 
-    def sending(self, message_id: int) -> Callable[[Command, Request], Answer]:
+    def sending(self, message_id: int) -> CommandHandler:
         """Return what answers an older command that requests one message."""
         name = LAYOUTS[message_id].kind.msgname
 
@@ -48,9 +57,10 @@ class StreamRequests:
     def _request_message(self, message: Command, request: Request) -> Answer:
         """Send a message (param1) once."""
         wanted = whole(message.param1, 1 << 24)
-        if wanted in self._special:
-            return self._special[wanted](message, request)
-        return UNSUPPORTED if wanted is None else self._send(wanted, request)
+        if wanted is None:
+            return UNSUPPORTED
+        send = self._requests.get(wanted)
+        return self._send(wanted, request) if send is None else send(message, request)
 
     def _send(self, wanted: int, request: Request) -> Answer:
         key = self._component, wanted
@@ -59,7 +69,7 @@ class StreamRequests:
         built = self._source.builders[key](request.now)
         if not built:
             return rejected_for_now(f"Message {wanted} denied: {self._source.absence(key) or 'no data of it now'}")
-        request.peer.reply_packed(*built, component=self._component)
+        request.peer.reply_built(built, self._component)
         return ACCEPTED
 
     def _set_message_interval(self, message: Command, request: Request) -> Answer:

@@ -1,14 +1,13 @@
 """Commands about the system itself: home, prearm checks, storage of parameters, restart."""
 
 import math
-from collections.abc import Callable, Mapping
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import newer_messages
 from gcs.mavlink.services.aircraft import Aircraft
 from gcs.mavlink.services.answer import ACCEPTED, Answer, denied
-from gcs.mavlink.services.dispatcher import Command, Request
+from gcs.mavlink.services.dispatcher import Command, Dispatcher, Request
 from gcs.mavlink.services.parameter_table import ParameterTable
 from gcs.mavlink.services.streams import StreamRequests
 
@@ -17,20 +16,27 @@ _READ, _WRITE, _RESET = 0.0, 1.0, 2.0
 
 
 class SystemCommands:
-    """What is asked of an autopilot beside flying; ``handlers`` by MAV_CMD."""
+    """What is asked of an autopilot beside flying."""
 
     def __init__(self, aircraft: Aircraft, parameters: ParameterTable, streams: StreamRequests) -> None:
         self._aircraft = aircraft
         self._parameters = parameters
-        self.handlers: Mapping[int, Callable[[Command, Request], Answer]] = {
-            mavlink.MAV_CMD_GET_HOME_POSITION: streams.sending(mavlink.MAVLINK_MSG_ID_HOME_POSITION),
-            mavlink.MAV_CMD_REQUEST_PROTOCOL_VERSION: streams.sending(newer_messages.PROTOCOL_VERSION),
-            mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: streams.sending(mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION),
-            mavlink.MAV_CMD_RUN_PREARM_CHECKS: self._run_prearm_checks,
-            mavlink.MAV_CMD_PREFLIGHT_STORAGE: self._storage,
-            mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN: self._reboot,
-            mavlink.MAV_CMD_DO_SET_HOME: self._set_home,
-        }
+        self._streams = streams
+
+    def register(self, dispatcher: Dispatcher) -> None:
+        """Take the commands of this service."""
+        sending = self._streams.sending
+        dispatcher.register_commands(
+            {
+                mavlink.MAV_CMD_GET_HOME_POSITION: sending(mavlink.MAVLINK_MSG_ID_HOME_POSITION),
+                mavlink.MAV_CMD_REQUEST_PROTOCOL_VERSION: sending(newer_messages.PROTOCOL_VERSION),
+                mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: sending(mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION),
+                mavlink.MAV_CMD_RUN_PREARM_CHECKS: self._run_prearm_checks,
+                mavlink.MAV_CMD_PREFLIGHT_STORAGE: self._storage,
+                mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN: self._reboot,
+                mavlink.MAV_CMD_DO_SET_HOME: self._set_home,
+            }
+        )
 
     def _run_prearm_checks(self, message: Command, request: Request) -> Answer:
         """Run the prearm checks, and say by STATUSTEXT what is wrong."""

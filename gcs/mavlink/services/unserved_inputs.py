@@ -34,7 +34,7 @@ class UnservedInputs:
     def register(self, dispatcher: Dispatcher) -> None:
         """Take the messages that no service has taken: to be called last."""
         for kind in self._texts:
-            if not dispatcher.serves(kind):
+            if kind not in dispatcher.messages:
                 dispatcher.register(kind, self._on_message)
 
     def _on_message(self, message: Any, request: Request) -> None:

@@ -15,7 +15,7 @@ _EXACT = 0.3  # m, horizontal distance to a place above which a landing begins
 
 def enter_mode(state: FreeFlightState, custom_mode: int) -> Answer:
     """Enter any mode but OFFBOARD. Disarmed, it begins when the vehicle is armed."""
-    enter = _ENTRY.get(custom_mode)
+    enter = ENTRY.get(custom_mode)
     if enter is None:
         return denied(f"{px4.mode_name(custom_mode)} denied: no such mode")
     answer = enter(state, custom_mode)
@@ -192,7 +192,7 @@ def _with_mission(state: FreeFlightState, custom_mode: int) -> Answer:
     return ACCEPTED
 
 
-_ENTRY: dict[int, Callable[[FreeFlightState, int], Answer]] = {
+ENTRY: dict[int, Callable[[FreeFlightState, int], Answer]] = {
     px4.MODE_HOLD: _freely,
     px4.MODE_TAKEOFF: _freely,
     px4.MODE_LAND: _when_armed,
