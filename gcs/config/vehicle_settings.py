@@ -172,6 +172,7 @@ class StreamIntervals(SettingsTable):
     estimator_status: float = 1.0  # s; ESTIMATOR_STATUS
     rc_channels: float = 1.0  # s; RC_CHANNELS
     position_target_local_ned: float = 1.0  # s; POSITION_TARGET_LOCAL_NED
+    position_target_global_int: float = 1.0  # s; POSITION_TARGET_GLOBAL_INT
     nav_controller_output: float = 1.0  # s; NAV_CONTROLLER_OUTPUT
     odometry: float = 1.0  # s; ODOMETRY
     servo_output_raw: float = 1.0  # s; SERVO_OUTPUT_RAW

@@ -23,6 +23,7 @@ HAVE_DATA = sorted(
     {number for component, number in Bench().vehicle.telemetry.builders if component == OWN}
     - {
         mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED,
+        mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT,
         mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D,
         mavlink.MAVLINK_MSG_ID_MISSION_ITEM_REACHED,
     }

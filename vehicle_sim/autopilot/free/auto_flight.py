@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from gcs.config.vehicle_settings import FreeFlightSettings
 from idc_controller.rotations_float import Vector
@@ -65,6 +65,13 @@ class AutoFlight:
         """Return True if it descends to the ground."""
         return bool(self._phases) and isinstance(self._phases[0], Descent)
 
+    def destination(self, here: Vector) -> Vector:
+        """Return where the phase ends (NED, m), as far as that is known; ``here``: position of the set-point."""
+        phase = self._phases[0] if self._phases else Brake()
+        if isinstance(phase, Descent):
+            return here[0], here[1], phase.ground
+        return _filled(phase.position, here) if isinstance(phase, Goal) else here
+
     def advance(
         self,
         motion: SmoothMotion,
@@ -106,11 +113,8 @@ class AutoFlight:
         self.place = goal.position
         if not math.isnan(sum(goal.position)):
             return goal
-        x, y, z = (
-            here if math.isnan(there) else there for there, here in zip(goal.position, motion.position, strict=True)
-        )
-        resolved = Goal((x, y, z), goal.radius, goal.yaw, goal.hold, goal.looks_ahead, goal.climb_speed)
-        self.place = x, y, z
+        self.place = _filled(goal.position, motion.position)
+        resolved = replace(goal, position=self.place)
         self._phases[0] = resolved
         return resolved
 
@@ -125,3 +129,9 @@ class AutoFlight:
     def _has_arrived(self, goal: Goal, measured: Measurement) -> bool:
         x, y, z = (there - here for there, here in zip(goal.position, measured.position, strict=True))
         return math.hypot(x, y) <= goal.radius and abs(z) <= self._settings.altitude_radius
+
+
+def _filled(place: Vector, here: Vector) -> Vector:
+    """Return ``place``, of which what is NaN is that of ``here``."""
+    x, y, z = (own if math.isnan(there) else there for there, own in zip(place, here, strict=True))
+    return x, y, z

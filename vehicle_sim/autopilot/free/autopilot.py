@@ -204,4 +204,4 @@ class FreeAutopilot(Autopilot):
         rate = 0.0 if math.isnan(setpoint.yaw_rate) else setpoint.yaw_rate
         yaw = motion.yaw + rate * step if math.isnan(setpoint.yaw) else setpoint.yaw
         motion.yaw = math.remainder(yaw, 2.0 * math.pi)
-        return Reference(setpoint.position, setpoint.velocity, setpoint.acceleration, motion.yaw, rate)
+        return Reference(setpoint.position, setpoint.velocity, setpoint.acceleration, motion.yaw, setpoint.yaw_rate)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from gcs.mavlink import px4
 from idc_controller.rotations_float import Vector, euler_of
-from vehicle_sim.autopilot.flight_state import FlightState
+from vehicle_sim.autopilot.flight_state import FlightState, PositionTarget
 from vehicle_sim.autopilot.free import parameters as names
 from vehicle_sim.autopilot.free.auto_flight import AutoFlight, Brake, Descent, Goal, Phase
 from vehicle_sim.autopilot.free.mission import Mission
@@ -48,6 +48,14 @@ class FreeFlightState(FlightState):
     def is_descending(self) -> bool:
         """Return True if it descends to the ground."""
         return self.flight is not None and self.flight.is_landing
+
+    def position_target(self, now: float) -> PositionTarget | None:
+        """Return what the position control follows, and where that ends; None: an attitude is flown, or nothing."""
+        reference, flight = self.reference, self.flight
+        if reference is None:
+            return None
+        end = reference.position if flight is None else flight.destination(reference.position)
+        return PositionTarget(*reference, end)
 
     @property
     def limits(self) -> SpeedLimits:
