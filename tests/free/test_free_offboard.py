@@ -264,3 +264,17 @@ def test_another_ground_cannot_steer_a_vehicle_in_offboard():
         assert bench.vehicles[0].refused_setpoints == refused + 1
         bench.run(2.0)
         assert bench.position()[0] < 0.2
+
+
+def test_refusal_of_set_points_and_of_offboard_names_the_reason():
+    with FreeBench() as bench:
+        bench.run(0.5)
+        bench.streaming[1] = local(POSITION_ONLY, frame=mavlink.MAV_FRAME_LOCAL_ENU)
+        bench.run(1.0)
+        assert bench.texts().count("frame 4 is not supported") == 1  # of seventeen set-points
+        assert bench.command(*OFFBOARD) == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
+        assert "OFFBOARD denied: SET_POSITION_TARGET_LOCAL_NED refused" in bench.texts()
+        bench.streaming.clear()
+        bench.run(2.0)
+        assert bench.command(*OFFBOARD) == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
+        assert "no set-points from you" in bench.texts()

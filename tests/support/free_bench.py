@@ -130,4 +130,6 @@ class FreeBench:
         assert self.run(20.0, lambda: all(self.mode_of(i + 1) == "AUTO.LOITER" for i in range(len(self.vehicles))))
 
     def texts(self) -> str:
-        return " ".join(m.text for _, _, m in self.messages if m.get_type() == "STATUSTEXT")
+        """Return all texts since the messages were cleared, the chunks of each joined."""
+        found = [m for _, _, m in self.messages if m.get_type() == "STATUSTEXT"]
+        return "".join((" " if m.chunk_seq == 0 else "") + m.text for m in found)

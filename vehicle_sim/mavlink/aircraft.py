@@ -1,23 +1,11 @@
 """A vehicle as the MAVLink services command it: what one that carries a payload with others does, and refuses."""
 
-from collections.abc import Mapping
-
-import pymavlink.dialects.v20.ardupilotmega as mavlink
-
 from gcs.mavlink import px4
-from gcs.mavlink.messages import Message
 from gcs.mavlink.services.aircraft import Reposition, Sender
 from gcs.mavlink.services.answer import Answer
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.modes import team_only
 from vehicle_sim.mavlink.control_owner import ControlOwner
-
-_ATTITUDE_ONLY = "Position set-points are ignored on a payload: only SET_ATTITUDE_TARGET is flown"
-TEAM_SETPOINTS: Mapping[type[Message], str] = {
-    mavlink.MAVLink_set_position_target_local_ned_message: _ATTITUDE_ONLY,
-    mavlink.MAVLink_set_position_target_global_int_message: _ATTITUDE_ONLY,
-}
-"""Set-points that one vehicle of a team does not fly, and what is said of them."""
 
 
 class CoupledAircraft:

@@ -29,12 +29,12 @@ from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.free.autopilot import FreeAutopilot
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.autopilot.vehicle_parameters import vehicle_parameters
-from vehicle_sim.mavlink.aircraft import TEAM_SETPOINTS, CoupledAircraft
+from vehicle_sim.mavlink.aircraft import CoupledAircraft
 from vehicle_sim.mavlink.control_owner import ControlOwner
 from vehicle_sim.mavlink.free_aircraft import FreeAircraft
 from vehicle_sim.mavlink.geodesy import LocalFrame
 from vehicle_sim.mavlink.mission_plans import CoupledPlans, MissionPlans
-from vehicle_sim.mavlink.setpoint_server import PositionSetpointServer, SetpointServer
+from vehicle_sim.mavlink.setpoint_server import AttitudeSetpointServer, PositionSetpointServer, SetpointServer
 from vehicle_sim.mavlink.streams import CLIENT_STREAMS, OFFSETS, default_intervals
 from vehicle_sim.mavlink.telemetry import Telemetry
 from vehicle_sim.world.range_sensor import RangeSample
@@ -117,7 +117,7 @@ class Vehicle:
             )
             plans = plans or MissionPlans(home, self.aircraft)
         else:
-            self._setpoints = SetpointServer(self.autopilot, owner, clock)
+            self._setpoints = AttitudeSetpointServer(self.autopilot, owner, clock)
             self.aircraft = CoupledAircraft(self.autopilot, owner)
         self._dispatcher = Dispatcher()
         # A further protocol registers its messages here.
@@ -136,7 +136,7 @@ class Vehicle:
         self._other_components = OtherComponents(own, own if free else payload_unit, of_payload_unit)
         ParameterServer(self.parameters, owner, self._peers).register(self._dispatcher)
         FileServices().register(self._dispatcher)
-        UnservedInputs(system_id, STICKS if free else {**STICKS, **TEAM_SETPOINTS}).register(self._dispatcher)
+        UnservedInputs(system_id, STICKS).register(self._dispatcher)
 
     @property
     def refused_setpoints(self) -> int:
