@@ -1,4 +1,6 @@
-"""A vehicle as the MAVLink services command it: what one that carries a payload with others does, and refuses."""
+"""A vehicle as the MAVLink services command it; what one that carries a payload with others refuses."""
+
+from collections.abc import Sequence
 
 from gcs.mavlink import px4
 from gcs.mavlink.services.aircraft import Reposition, Sender
@@ -8,17 +10,15 @@ from vehicle_sim.autopilot.modes import team_only
 from vehicle_sim.mavlink.control_owner import ControlOwner
 
 
-class CoupledAircraft:
-    """A vehicle on a payload: flown in OFFBOARD by the ground in control; what would tear the team apart is denied."""
+class SimulatedAircraft:
+    """What any simulated vehicle does when it is commanded; which modes it has is its kind's."""
+
+    modes: Sequence[int]
+    obeys_broadcasts: bool
 
     def __init__(self, autopilot: Autopilot, owner: ControlOwner) -> None:
         self._autopilot = autopilot
         self._owner = owner
-
-    modes = (px4.MODE_HOLD, px4.MODE_LAND, px4.MODE_OFFBOARD, px4.MODE_POSCTL, px4.MODE_ALTCTL, px4.MODE_MANUAL)
-    """Those of sticks on the ground only."""
-    obeys_broadcasts = False
-    """One that missed the command would be left behind by the others."""
 
     def arming_problem(self, now: float) -> str | None:
         """See :meth:`.Autopilot.arming_problem`."""
@@ -37,6 +37,15 @@ class CoupledAircraft:
         if custom_mode == px4.MODE_OFFBOARD:
             return self._owner.enter_offboard(sender, now)
         return self._autopilot.enter_mode(custom_mode, now)
+
+
+class CoupledAircraft(SimulatedAircraft):
+    """A vehicle on a payload: flown in OFFBOARD by the ground in control; what would tear the team apart is denied."""
+
+    modes = (px4.MODE_HOLD, px4.MODE_LAND, px4.MODE_OFFBOARD, px4.MODE_POSCTL, px4.MODE_ALTCTL, px4.MODE_MANUAL)
+    """Those of sticks on the ground only."""
+    obeys_broadcasts = False
+    """One that missed the command would be left behind by the others."""
 
     def take_off(self, altitude: float, now: float) -> Answer:
         """Refuse."""

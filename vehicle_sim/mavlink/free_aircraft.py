@@ -4,22 +4,24 @@ import math
 from collections.abc import Callable, Sequence
 
 from gcs.mavlink import px4
-from gcs.mavlink.services.aircraft import Reposition, Sender
+from gcs.mavlink.services.aircraft import Reposition
 from gcs.mavlink.services.answer import ACCEPTED, Answer, denied, rejected_for_now
 from gcs.mavlink.services.mission_item import MissionItem
 from vehicle_sim.autopilot.free.autopilot import FreeAutopilot
 from vehicle_sim.autopilot.free.mission import Mission
+from vehicle_sim.mavlink.aircraft import SimulatedAircraft
 from vehicle_sim.mavlink.control_owner import ControlOwner
 from vehicle_sim.mavlink.geodesy import LocalFrame
 from vehicle_sim.mavlink.mission_steps import steps_of
 
 
-class FreeAircraft:
+class FreeAircraft(SimulatedAircraft):
     """Does what PX4 does; places and altitudes become those of the local frame here."""
 
+    _autopilot: FreeAutopilot
+
     def __init__(self, autopilot: FreeAutopilot, owner: ControlOwner, frame: LocalFrame) -> None:
-        self._autopilot = autopilot
-        self._owner = owner
+        super().__init__(autopilot, owner)
         self._frame = frame
         self._items: tuple[MissionItem, ...] = ()
 
@@ -28,24 +30,6 @@ class FreeAircraft:
         px4.MODE_POSCTL, px4.MODE_ALTCTL,
     )  # fmt: skip
     obeys_broadcasts = True
-
-    def arming_problem(self, now: float) -> str | None:
-        """See :meth:`.Autopilot.arming_problem`."""
-        return self._autopilot.arming_problem(now)
-
-    def arm(self, now: float, force: bool = False) -> Answer:
-        """See :meth:`.FreeAutopilot.arm`."""
-        return self._autopilot.arm(now, force)
-
-    def disarm(self, now: float, force: bool = False) -> Answer:
-        """See :meth:`.Autopilot.disarm`."""
-        return self._autopilot.disarm(force)
-
-    def enter_mode(self, custom_mode: int, sender: Sender, now: float) -> Answer:
-        """Enter a mode; OFFBOARD on the set-points of ``sender``."""
-        if custom_mode == px4.MODE_OFFBOARD:
-            return self._owner.enter_offboard(sender, now)
-        return self._autopilot.enter_mode(custom_mode, now)
 
     def take_off(self, altitude: float, now: float) -> Answer:
         """Take off to ``altitude`` (m above mean sea level; NaN: the parameter's height above home)."""

@@ -5,7 +5,6 @@ All that crosses this boundary is SI, north-east-down, forward-right-down, quate
 
 import math
 from collections.abc import Sequence
-from typing import Self
 
 import numpy as np
 import pybullet
@@ -13,7 +12,8 @@ import pybullet
 from gcs.config.tables import UavConfig, WorldConfig
 from idc_controller.arrays import Array
 from idc_controller.rotations_float import into_body
-from vehicle_sim.world.errors import SimulationError, UnsupportedWorld
+from vehicle_sim.world.engine import EngineWorld
+from vehicle_sim.world.errors import UnsupportedWorld
 from vehicle_sim.world.ground import NO_CONTACTS, Contacts
 from vehicle_sim.world.multibody import DISC_THICKNESS
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
@@ -29,7 +29,7 @@ _LIFTED = 0.05  # m above the ground: it has taken off
 _UPRIGHT = 0.5  # of the upward axis: it stands, and has not turned over
 
 
-class FreeWorld:
+class FreeWorld(EngineWorld):
     """One simulated world of free UAVs, with the interface of :class:`~.world.World` as far as a swarm uses it.
 
     At the start they stand on the ground in a row, :data:`SPACING` apart, with yaw 0. Equal calls give equal results to
@@ -47,16 +47,11 @@ class FreeWorld:
     ) -> None:
         if 2.0 * max(uav.inertia) > sum(uav.inertia) * (1.0 + 1e-9):
             raise UnsupportedWorld(f"uav.inertia: no rigid body has the moments of inertia {list(uav.inertia)}")
-        self.physics_hz, self.g = physics_hz, g
+        super().__init__(physics_hz, g, gui)
+        self.g = g
         self._rest = settings.rest
-        self._client = client = pybullet.connect(pybullet.GUI if gui else pybullet.DIRECT)
-        if client < 0:
-            raise SimulationError("the physics engine does not start" + (" (is there a display?)" if gui else ""))
+        client = self._client
         try:
-            pybullet.setGravity(0.0, 0.0, -g, physicsClientId=client)
-            pybullet.setPhysicsEngineParameter(
-                fixedTimeStep=1.0 / physics_hz, numSubSteps=0, deterministicOverlappingPairs=1, physicsClientId=client
-            )
             plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=client)
             self._ground = pybullet.createMultiBody(0.0, plane, useMaximalCoordinates=1, physicsClientId=client)
             disc = pybullet.createCollisionShape(
@@ -67,7 +62,6 @@ class FreeWorld:
         except BaseException:
             self.close()
             raise
-        self.steps = 0
         self.any_lifted = False
         """A vehicle has left the ground."""
         self._thrusts = (0.0,) * vehicles
@@ -86,11 +80,6 @@ class FreeWorld:
         )  # fmt: skip
         pybullet.changeDynamics(body, -1, localInertiaDiagonal=uav.inertia, physicsClientId=client)
         return body
-
-    @property
-    def time(self) -> float:
-        """Seconds since the world was made."""
-        return self.steps / self.physics_hz
 
     @property
     def at_rest(self) -> bool:
@@ -151,18 +140,6 @@ class FreeWorld:
         rate, g = self.physics_hz, self.g
         changes = enumerate(self._changes.tolist(), start=1)
         return [i for i, (x, y, z) in changes if math.hypot(x * rate, y * rate, z * rate - g) > ACCELEROMETER_RANGE]
-
-    def close(self) -> None:
-        """End the world; harmless when it has ended."""
-        if self._client >= 0:
-            pybullet.disconnect(self._client)
-            self._client = -1
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def _read(self) -> None:
         """Read the state after a step.

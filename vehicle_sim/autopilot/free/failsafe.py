@@ -1,7 +1,7 @@
 """A free vehicle's failsafes, as PX4 has them without a remote control; ``docs/architecture.md`` mirrors the table."""
 
 from gcs.mavlink import px4
-from vehicle_sim.autopilot.failsafe import Failsafe, always, armed, by_cause, disarm, setpoints_lost
+from vehicle_sim.autopilot.failsafe import OFFBOARD_LOSS_ON_GROUND, Failsafe, by_cause, setpoints_lost
 from vehicle_sim.autopilot.free import parameters as names
 from vehicle_sim.autopilot.free.modes import return_home
 from vehicle_sim.autopilot.free.state import FreeFlightState
@@ -55,15 +55,7 @@ def _react_to_link_loss(state: FreeFlightState, now: float) -> None:
 
 FAILSAFES: tuple[Failsafe[FreeFlightState], ...] = (
     Failsafe("offboard_loss", px4.PARAM_SETPOINT_LOSS, setpoints_lost, _in_flight, _hold, "Set-points lost: holding"),
-    Failsafe(
-        "offboard_loss_on_ground",
-        px4.PARAM_SETPOINT_LOSS,
-        setpoints_lost,
-        armed,
-        disarm,
-        "Set-points lost on the ground: disarmed",
-    ),
-    Failsafe("offboard_loss_disarmed", px4.PARAM_SETPOINT_LOSS, setpoints_lost, always, disarm, ""),
+    *OFFBOARD_LOSS_ON_GROUND,
     Failsafe(
         "offboard_still_lost", names.FAILSAFE_DELAY, _hold_is_over, _in_flight, _return, "Set-points lost: returning"
     ),
