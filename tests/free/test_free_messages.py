@@ -13,28 +13,20 @@ VELOCITY_ONLY = 0b1101_1100_0111
 YAW_RATE_IGNORE, NO_POSITION = 0b1000_0000_0000, 0b111
 
 
-def requested(bench, number):
-    """Request a message once; return it, None if it is refused."""
-    if bench.command(mavlink.MAV_CMD_REQUEST_MESSAGE, number) != mavlink.MAV_RESULT_ACCEPTED:
-        return None
-    [message] = [m for _, _, m in bench.messages if m.get_msgId() == number]
-    return message
-
-
 def test_targets_of_a_go_to_are_its_moving_set_point_and_its_place():
     with FreeBench() as bench:
         bench.take_off()
         bench.vehicles[0].autopilot.go_to((30.0, 40.0, -8.0), NAN, NAN, bench.now)
         bench.run(3.0)
-        local = requested(bench, LOCAL_TARGET)
+        local = bench.requested(LOCAL_TARGET)
         assert math.dist((local.x, local.y, local.z), bench.position()) < 1.5
         assert math.hypot(local.vx, local.vy) == pytest.approx(5.0, abs=0.3)  # MPC_XY_CRUISE
         assert local.type_mask == YAW_RATE_IGNORE
-        place = requested(bench, GLOBAL_TARGET)
+        place = bench.requested(GLOBAL_TARGET)
         found = FRAME.local(place.lat_int * 1e-7, place.lon_int * 1e-7, place.alt)
         assert found == pytest.approx((30.0, 40.0, -8.0), abs=0.05)
         assert place.coordinate_frame == mavlink.MAV_FRAME_GLOBAL_INT
-        output = requested(bench, NAV_OUTPUT)
+        output = bench.requested(NAV_OUTPUT)
         x, y, z = bench.position()
         assert output.wp_dist == pytest.approx(math.hypot(30.0 - x, 40.0 - y), abs=1.0)
         assert output.target_bearing == pytest.approx(53, abs=1)
@@ -46,9 +38,9 @@ def test_targets_of_a_landing_end_on_the_ground():
         bench.take_off(4.0)
         bench.command(mavlink.MAV_CMD_NAV_LAND)
         bench.run(2.0)
-        place = requested(bench, GLOBAL_TARGET)
+        place = bench.requested(GLOBAL_TARGET)
         assert FRAME.local(place.lat_int * 1e-7, place.lon_int * 1e-7, place.alt)[2] == pytest.approx(0.0, abs=0.1)
-        assert requested(bench, LOCAL_TARGET).vz == pytest.approx(0.7, abs=0.05)  # MPC_LAND_SPEED
+        assert bench.requested(LOCAL_TARGET).vz == pytest.approx(0.7, abs=0.05)  # MPC_LAND_SPEED
 
 
 def test_targets_of_velocity_set_points_leave_the_position_out():
@@ -60,23 +52,23 @@ def test_targets_of_velocity_set_points_leave_the_position_out():
         bench.run(0.3)
         assert bench.command(*OFFBOARD) == mavlink.MAV_RESULT_ACCEPTED
         bench.run(1.0)
-        target = requested(bench, LOCAL_TARGET)
+        target = bench.requested(LOCAL_TARGET)
         assert (target.vx, target.vy, target.vz) == (2.0, 1.0, 0.0)
         assert target.type_mask & 0b1_1111_1111 == 0b1_1100_0111
         assert target.type_mask & YAW_RATE_IGNORE
-        assert requested(bench, GLOBAL_TARGET) is None
-        assert requested(bench, NAV_OUTPUT).wp_dist == 0
+        assert bench.requested(GLOBAL_TARGET) is None
+        assert bench.requested(NAV_OUTPUT).wp_dist == 0
 
 
 def test_no_target_while_an_attitude_is_flown_or_nothing():
     with FreeBench() as bench:
         bench.run(0.5)
-        assert requested(bench, LOCAL_TARGET) is None and requested(bench, GLOBAL_TARGET) is None
+        assert bench.requested(LOCAL_TARGET) is None and bench.requested(GLOBAL_TARGET) is None
         bench.take_off()
-        assert requested(bench, LOCAL_TARGET) is not None
+        assert bench.requested(LOCAL_TARGET) is not None
         hover = 0.7 * 9.81 / 30.0
         bench.streaming[1] = mavlink.MAVLink_set_attitude_target_message(0, 1, 1, 0b111, [1, 0, 0, 0], 0, 0, 0, hover)
         bench.run(0.3)
         assert bench.command(*OFFBOARD) == mavlink.MAV_RESULT_ACCEPTED
         bench.run(0.3)
-        assert requested(bench, LOCAL_TARGET) is None and requested(bench, GLOBAL_TARGET) is None
+        assert bench.requested(LOCAL_TARGET) is None and bench.requested(GLOBAL_TARGET) is None

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from gcs.mavlink import px4
-from gcs.mavlink.services.aircraft import Reposition, Sender
-from gcs.mavlink.services.answer import Answer
+from gcs.mavlink.services.aircraft import Place, Reposition, Sender, Turn
+from gcs.mavlink.services.answer import Answer, denied
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.modes import team_only
 from vehicle_sim.mavlink.control_owner import ControlOwner
@@ -58,6 +58,14 @@ class CoupledAircraft(SimulatedAircraft):
     def change_speed(self, speed: float, now: float) -> Answer:
         """Refuse."""
         return team_only("Speed change")
+
+    def turn(self, turn: Turn, now: float) -> Answer:
+        """Refuse."""
+        return team_only("Turn")
+
+    def set_home(self, place: Place | None, now: float) -> Answer:
+        """Refuse: home is the origin of the local frame."""
+        return denied("Home denied: it is the origin of the simulated world; vehicle-sim --mission sets it")
 
     def start_mission(self, first: int, now: float) -> Answer:
         """Refuse."""

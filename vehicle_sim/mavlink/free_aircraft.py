@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 
 from gcs.mavlink import px4
-from gcs.mavlink.services.aircraft import Reposition
+from gcs.mavlink.services.aircraft import Place, Reposition, Turn
 from gcs.mavlink.services.answer import ACCEPTED, Answer, denied, rejected_for_now
 from gcs.mavlink.services.mission_item import MissionItem
 from vehicle_sim.autopilot.free.autopilot import FreeAutopilot
@@ -33,7 +33,7 @@ class FreeAircraft(SimulatedAircraft):
 
     def take_off(self, altitude: float, now: float) -> Answer:
         """Take off to ``altitude`` (m above mean sea level; NaN: the parameter's height above home)."""
-        return self._autopilot.take_off(altitude - self._frame.altitude + self._autopilot.home[2], now)
+        return self._autopilot.take_off(altitude - self._frame.altitude + self._autopilot.state.ground, now)
 
     def reposition(self, goal: Reposition, now: float) -> Answer:
         """Fly to a place and hold there."""
@@ -51,6 +51,17 @@ class FreeAircraft(SimulatedAircraft):
     def change_speed(self, speed: float, now: float) -> Answer:
         """Fly with another horizontal speed (m/s) from now on."""
         return self._autopilot.change_speed(speed, now)
+
+    def turn(self, turn: Turn, now: float) -> Answer:
+        """Change the heading where it holds."""
+        return self._autopilot.turn(turn.angle, turn.rate, turn.direction, turn.is_relative)
+
+    def set_home(self, place: Place | None, now: float) -> Answer:
+        """Return to a ``place`` from now on (None: to where it is), and have the mission's altitudes above it."""
+        answer = self._autopilot.set_home(None if place is None else self._frame.local(*place))
+        if answer == ACCEPTED:
+            self._autopilot.replace_steps(steps_of(self._items, self._frame, self._autopilot.home))
+        return answer
 
     def start_mission(self, first: int, now: float) -> Answer:
         """Fly the mission from item ``first`` on; as PX4 it arms for it."""

@@ -103,7 +103,7 @@ def global_position(report: Report, now: float) -> Built:
     latitude, longitude, altitude = report.frame.place_of(measured)
     v_x, v_y, v_z = (clamp(100.0 * v, 16) for v in measured.velocity)
     heading = round(math.degrees(euler_of(measured.attitude)[2]) * 100.0) % 36000
-    height = clamp(-1e3 * measured.position[2], 32)
+    height = clamp(1e3 * (report.autopilot.home[2] - measured.position[2]), 32)
     stamp = report.time_boot_ms(measured.time)
     return (_GLOBAL_POSITION_INT.pack(stamp, latitude, longitude, altitude, height, v_x, v_y, v_z, heading),)
 
@@ -153,13 +153,14 @@ def odometry(report: Report, now: float) -> Built:
 
 
 def altitude(report: Report, now: float) -> Built:
-    """Altitude above mean sea level and height above home, which is on the flat ground."""
+    """Altitude above mean sea level, height in the local frame, above home and above the flat ground."""
     measured = report.own_state
     if measured is None:
         return ()
     above_sea, height = _altitude_of(report, measured), -measured.position[2]
+    above_home = report.autopilot.home[2] + height
     stamp = report.time_boot_us(measured.time)
-    return (_ALTITUDE.pack(stamp, above_sea, above_sea, height, height, report.home.altitude, height),)
+    return (_ALTITUDE.pack(stamp, above_sea, above_sea, height, above_home, report.home.altitude, height),)
 
 
 def highres_imu(report: Report, now: float) -> Built:

@@ -81,14 +81,14 @@ def return_home(state: FreeFlightState) -> None:
             altitude = min(distance, altitude)
         altitude = max(altitude, 2.0 * radius)
     top = min(z, home[2] - altitude)
-    low = home[2] - get[names.DESCEND_ALTITUDE]
+    low = min(home[2], state.ground) - get[names.DESCEND_ALTITUDE]
     state.fly(
         [
             Brake(),
             state.goal((math.nan, math.nan, top), radius=math.inf, looks_ahead=False),
             state.goal((home[0], home[1], top), radius=_EXACT),
             state.goal((home[0], home[1], max(top, low)), radius=_EXACT, looks_ahead=False),
-            Descent(home[2]),
+            Descent(state.ground),
         ]
     )
 

@@ -19,6 +19,10 @@ class FreeFlightState(FlightState):
     """What the parts of a free vehicle's autopilot share, beside what any vehicle's do."""
 
     home: Vector | None = None
+    """Where it returns to (NED, m): where it was armed last, before that where it was first, or as commanded."""
+    home_is_commanded: bool = False
+    """Arming does not change it then, as in PX4."""
+    armed_at: Vector | None = None
     """Where it was armed last, before that where it was first (NED, m)."""
     flight: AutoFlight | None = None
     """What it flies by itself; None: nothing, or set-points."""
@@ -28,7 +32,7 @@ class FreeFlightState(FlightState):
     """s"""
     mission: Mission = field(default_factory=Mission)
     take_off_altitude: float = math.nan
-    """m above home, of the next take-off; NaN: the parameter's."""
+    """m above the ground, of the next take-off; NaN: the parameter's."""
     speed: float = math.nan
     """m/s, horizontal, as commanded; NaN: the parameter's."""
     reference: Reference | None = None
@@ -116,7 +120,7 @@ class FreeFlightState(FlightState):
     @property
     def ground(self) -> float:
         """Where the ground is taken to be (NED, m)."""
-        return 0.0 if self.home is None else self.home[2]
+        return 0.0 if self.armed_at is None else self.armed_at[2]
 
     def stop(self) -> None:
         """Rotors off. The vehicle is then in HOLD."""
