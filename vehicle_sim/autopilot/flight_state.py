@@ -55,7 +55,7 @@ class FlightState:
     stop_plan: StopPlan | None = None
     """The newest of the ground in control."""
     link_time: float = -math.inf
-    """Time of the last message of any ground (s)."""
+    """Time of the last message of any ground (s), of a free vehicle of the last HEARTBEAT of one."""
     notices: list[str] = field(default_factory=list)
     """STATUSTEXTs to the operator, not sent yet."""
 

@@ -105,12 +105,14 @@ class Vehicle:
         self._sent_changes = 0
         self._latest = -math.inf
         owner = ControlOwner(self.autopilot, link)
+        self._dispatcher = Dispatcher()
         self.aircraft: FreeAircraft | CoupledAircraft
         """What commands and missions are carried out by."""
         if isinstance(self.autopilot, FreeAutopilot):
             frame = LocalFrame(home)
             self._setpoints: SetpointServer = PositionSetpointServer(self.autopilot, owner, clock, frame)
             self.aircraft = FreeAircraft(self.autopilot, owner, frame)
+            self._dispatcher.register(mavlink.MAVLink_heartbeat_message, self._on_heartbeat)
             self.telemetry.capabilities |= (
                 mavlink.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
                 | mavlink.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
@@ -119,7 +121,6 @@ class Vehicle:
         else:
             self._setpoints = AttitudeSetpointServer(self.autopilot, owner, clock)
             self.aircraft = CoupledAircraft(self.autopilot, owner)
-        self._dispatcher = Dispatcher()
         # A further protocol registers its messages here.
         self._setpoints.register(self._dispatcher)
         LinkServices(clock).register(self._dispatcher)
@@ -197,6 +198,10 @@ class Vehicle:
                 self._dispatcher.dispatch(received, request)
             else:
                 self._other_components.handle(received, request)
+
+    def _on_heartbeat(self, message: mavlink.MAVLink_heartbeat_message, request: Request) -> None:
+        if message.type == mavlink.MAV_TYPE_GCS and isinstance(self.autopilot, FreeAutopilot):
+            self.autopilot.ground_heartbeat_received(request.now)
 
     def datagrams_to_send(self, now: float) -> list[tuple[bytes, Address]]:
         """Return all that is due at ``now`` (s), each with its address."""

@@ -14,7 +14,7 @@ from vehicle_sim.autopilot.failsafe import check_failsafes
 from vehicle_sim.autopilot.flight_state import TIME_TOLERANCE
 from vehicle_sim.autopilot.free import modes
 from vehicle_sim.autopilot.free.auto_flight import turn_angle
-from vehicle_sim.autopilot.free.failsafe import FREE
+from vehicle_sim.autopilot.free.failsafe import FREE, is_data_link_lost
 from vehicle_sim.autopilot.free.mission import Mission, MissionStep
 from vehicle_sim.autopilot.free.position_control import Reference
 from vehicle_sim.autopilot.free.state import FreeFlightState
@@ -53,6 +53,21 @@ class FreeAutopilot(Autopilot):
         return mavlink.MAV_LANDED_STATE_TAKEOFF if takes_off else found
 
     # What the ground commands
+
+    def ground_message_received(self, now: float) -> None:
+        """See :meth:`.Autopilot.ground_message_received`; the data link is that of HEARTBEATs, as in PX4."""
+        self._decide_anew()
+
+    def ground_heartbeat_received(self, now: float) -> None:
+        """A HEARTBEAT of a ground station has come: the data link is up."""
+        self.state.link_time = now
+
+    def arming_problem(self, now: float) -> str | None:
+        """See :meth:`.Autopilot.arming_problem`; as in PX4 it wants the ground station whose loss it would react to."""
+        problem = super().arming_problem(now)
+        if problem is None and is_data_link_lost(self.state, now):
+            return "NAV_DLL_ACT is set, and no HEARTBEAT of a ground station (MAV_TYPE_GCS) comes"
+        return problem
 
     def arm(self, now: float, force: bool = False) -> Answer:
         """See :meth:`.Autopilot.arm`; home is where it stands, and what its mode flies begins."""

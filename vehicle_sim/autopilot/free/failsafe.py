@@ -33,13 +33,16 @@ def _return(state: FreeFlightState, now: float) -> None:
     return_home(state)
 
 
-def _data_link_lost(state: FreeFlightState, now: float) -> bool:
+def is_data_link_lost(state: FreeFlightState, now: float) -> bool:
+    """Return True if no ground station sends its HEARTBEAT, and the vehicle is to react to that."""
     return (
         state.parameters[names.LINK_LOSS_ACTION] != _NOTHING
-        and not state.failsafe
-        and state.mode not in (px4.MODE_LAND, px4.MODE_RETURN)
         and now - state.link_time > state.parameters[px4.PARAM_LINK_LOSS]
     )
+
+
+def _data_link_lost(state: FreeFlightState, now: float) -> bool:
+    return not state.failsafe and state.mode not in (px4.MODE_LAND, px4.MODE_RETURN) and is_data_link_lost(state, now)
 
 
 def _react_to_link_loss(state: FreeFlightState, now: float) -> None:
@@ -60,7 +63,12 @@ FAILSAFES: tuple[Failsafe[FreeFlightState], ...] = (
         "offboard_still_lost", names.FAILSAFE_DELAY, _hold_is_over, _in_flight, _return, "Set-points lost: returning"
     ),
     Failsafe(
-        "data_link_loss", names.LINK_LOSS_ACTION, _data_link_lost, _in_flight, _react_to_link_loss, "No ground station"
+        "data_link_loss",
+        names.LINK_LOSS_ACTION,
+        _data_link_lost,
+        _in_flight,
+        _react_to_link_loss,
+        "No ground station: NAV_DLL_ACT",
     ),
 )
 
