@@ -56,6 +56,8 @@ class FlightState:
     """The newest of the ground in control."""
     link_time: float = -math.inf
     """Time of the last message of any ground (s), of a free vehicle of the last HEARTBEAT of one."""
+    specific_force: Vector | None = None
+    """Measured last, in the body frame (m/s2), within the accelerometer's range; None: it is not measured."""
     notices: list[str] = field(default_factory=list)
     """STATUSTEXTs to the operator, not sent yet."""
 
@@ -65,6 +67,10 @@ class FlightState:
         if not self.failsafe:
             return self.mode
         return px4.MODE_LAND if self.is_descending else px4.MODE_HOLD
+
+    def has_position(self, now: float) -> bool:
+        """Return True if usable samples come, and the position is measured."""
+        return self.navigation.is_valid(now)
 
     @property
     def now(self) -> float:

@@ -41,7 +41,7 @@ class FreeAircraft(SimulatedAircraft):
         if math.isfinite(goal.latitude) and math.isfinite(goal.longitude):
             altitude = goal.altitude
             if math.isnan(altitude):
-                estimate = self._autopilot.state.navigation.estimate
+                estimate = self._autopilot.state.estimate
                 altitude = self._frame.altitude - (0.0 if estimate is None else estimate.position[2])
             north, east, down = self._frame.local(goal.latitude, goal.longitude, altitude)
         else:

@@ -11,13 +11,13 @@ import pybullet
 
 from gcs.config.tables import UavConfig, WorldConfig
 from idc_controller.arrays import Array
-from idc_controller.rotations_float import into_body
+from idc_controller.rotations_float import Vector, into_body
 from vehicle_sim.world.engine import EngineWorld
 from vehicle_sim.world.errors import UnsupportedWorld
 from vehicle_sim.world.ground import NO_CONTACTS, Contacts
 from vehicle_sim.world.multibody import DISC_THICKNESS
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
-from vehicle_sim.world.readings import ACCELEROMETER_RANGE
+from vehicle_sim.world.sensors import ACCELEROMETER_RANGE
 from vehicle_sim.world.state_kernels import STATE_COLUMNS
 from vehicle_sim.world.world_state import FreeState, UavState, flipped, quaternion_from_engine, upward_axis
 
@@ -67,7 +67,8 @@ class FreeWorld(EngineWorld):
         self._thrusts = (0.0,) * vehicles
         self._contacts = NO_CONTACTS
         self._states, self._changes = np.zeros((vehicles, STATE_COLUMNS)), np.zeros((vehicles, 3))
-        self._velocities = np.zeros((vehicles, 3))
+        self._velocities, self._felt_velocities = np.zeros((vehicles, 3)), np.zeros((vehicles, 3))
+        self._felt_at = 0
         self._read()
 
     def _add(self, uav: UavConfig, shape: int, index: int, friction: float) -> int:
@@ -132,6 +133,17 @@ class FreeWorld(EngineWorld):
     def contacts(self) -> Contacts:
         """Return what touches after the last step. A UAV that stands upright on the ground does not count as a pair."""
         return self._contacts
+
+    def specific_forces(self) -> list[Vector]:
+        """Return what the accelerometers measured since the last call (N), in the bodies' frames (m/s2), no noise."""
+        rate = self.physics_hz / max(self.steps - self._felt_at, 1)
+        changes = ((self._velocities - self._felt_velocities) * rate).tolist()
+        self._felt_at, self._felt_velocities = self.steps, self._velocities
+        attitudes = self._states[:, 3:7].tolist()
+        return [
+            into_body((w, q_x, q_y, q_z), (x, y, z - self.g))
+            for (w, q_x, q_y, q_z), (x, y, z) in zip(attitudes, changes, strict=True)
+        ]
 
     def clipped(self) -> Sequence[int]:
         """Return whose accelerometer exceeded its range in the last step, 1 .. N: without contact nobody's."""

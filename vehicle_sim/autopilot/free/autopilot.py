@@ -73,8 +73,9 @@ class FreeAutopilot(Autopilot):
         """See :meth:`.Autopilot.arm`; home is where it stands, and what its mode flies begins."""
         was_armed = self.state.armed
         answer = super().arm(now, force)
-        estimate = self.state.navigation.estimate
+        estimate = self.state.estimate
         if answer == ACCEPTED and not was_armed and estimate is not None:
+            self.state.reckoning.restart()
             self.state.armed_at = estimate.position
             if not self.state.home_is_commanded:
                 self.state.home = estimate.position
@@ -90,10 +91,12 @@ class FreeAutopilot(Autopilot):
 
     def enter_offboard(self, setpoint: Setpoint, received: float, now: float) -> Answer:
         """Fly the set-points of a ground, the last of which was ``received`` (s) a moment ago."""
+        if self.state.armed and self.state.reckoning.is_lost and not isinstance(setpoint, AttitudeSetpoint):
+            return modes.without_position("OFFBOARD by position")
         answer = super().enter_offboard(setpoint, received, now)
         if answer == ACCEPTED:
             self.state.flight = None
-            estimate = self.state.navigation.estimate
+            estimate = self.state.estimate
             if estimate is not None:
                 self.state.motion.start(estimate.position, estimate.velocity, euler_of(estimate.attitude)[2])
         return answer
@@ -121,6 +124,8 @@ class FreeAutopilot(Autopilot):
         state = self.state
         if not state.armed or not state.land.in_air:
             return rejected_for_now("Reposition denied: not flying")
+        if state.reckoning.is_lost:
+            return modes.without_position("Reposition")
         state.mode, state.failsafe = px4.MODE_HOLD, False
         state.speed = speed if speed > 0.0 else state.speed
         state.fly([state.goal(position, yaw, hold=math.inf)])
@@ -159,9 +164,9 @@ class FreeAutopilot(Autopilot):
 
     def set_home(self, place: Vector | None) -> Answer:
         """Return to ``place`` (NED, m) from now on, None: to where it is."""
-        estimate = self.state.navigation.estimate
-        if place is None and (estimate is None or not self.state.navigation.is_valid(self.state.now)):
-            return rejected_for_now("Home denied: no navigation data")
+        estimate = self.state.estimate
+        if place is None and (estimate is None or not self.state.has_position(self.state.now)):
+            return modes.without_position("Home")
         self.state.home_is_commanded = place is not None
         self.state.home = estimate.position if place is None and estimate is not None else place
         if self.mode == px4.MODE_RETURN and self.state.armed:
@@ -191,9 +196,17 @@ class FreeAutopilot(Autopilot):
 
     # The onboard loop
 
+    def feel(self, force: Vector, now: float) -> None:
+        """See :meth:`.Autopilot.feel`; in flight the position goes on by it while none is measured."""
+        super().feel(force, now)
+        state = self.state
+        if state.armed and state.specific_force is not None:
+            is_clipped = state.specific_force != force
+            state.reckoning.advance(state.specific_force, is_clipped=is_clipped, now=now)
+
     def _supervise(self, now: float) -> None:
         state = self.state
-        estimate = state.navigation.estimate
+        estimate = state.estimate
         assert estimate is not None
         if state.home is None:
             state.home = state.armed_at = estimate.position
@@ -246,7 +259,7 @@ class FreeAutopilot(Autopilot):
             return
         step = min(now - self._last_control, settings.step_max)
         self._last_control, self._control_due = now, now + settings.control_interval
-        measured = state.navigation.estimate
+        measured = state.estimate
         assert measured is not None
         if setpoint is not None:
             state.reference = self._reference_of(setpoint, step)

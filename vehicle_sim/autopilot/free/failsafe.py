@@ -28,6 +28,17 @@ def _hold_is_over(state: FreeFlightState, now: float) -> bool:
     )
 
 
+def _position_lost(state: FreeFlightState, now: float) -> bool:
+    """Return True if the position that is flown by is not measured; attitudes of OFFBOARD are flown without."""
+    return state.reckoning.is_lost and state.reference is not None and state.flown_mode != px4.MODE_LAND
+
+
+def _land(state: FreeFlightState, now: float) -> None:
+    state.failsafe, state.failsafe_mode = True, px4.MODE_LAND
+    state.flight = None  # what follows begins at the place that the vehicle has by dead reckoning
+    state.land_here()
+
+
 def _return(state: FreeFlightState, now: float) -> None:
     state.failsafe, state.failsafe_mode = True, px4.MODE_RETURN
     return_home(state)
@@ -52,11 +63,11 @@ def _react_to_link_loss(state: FreeFlightState, now: float) -> None:
     elif action == _RETURN:
         _return(state, now)
     else:
-        state.failsafe, state.failsafe_mode = True, px4.MODE_LAND
-        state.land_here()
+        _land(state, now)
 
 
 FAILSAFES: tuple[Failsafe[FreeFlightState], ...] = (
+    Failsafe("position_loss", names.POSITION_LOSS, _position_lost, _in_flight, _land, "Position lost: descending"),
     Failsafe("offboard_loss", px4.PARAM_SETPOINT_LOSS, setpoints_lost, _in_flight, _hold, "Set-points lost: holding"),
     *OFFBOARD_LOSS_ON_GROUND,
     Failsafe(

@@ -18,11 +18,18 @@ def enter_mode(state: FreeFlightState, custom_mode: int) -> Answer:
     enter = _ENTRY.get(custom_mode)
     if enter is None:
         return denied(f"{px4.mode_name(custom_mode)} denied: no such mode")
+    if state.armed and state.reckoning.is_lost and custom_mode != px4.MODE_LAND:
+        return without_position(px4.mode_name(custom_mode))
     answer = enter(state, custom_mode)
     if answer == ACCEPTED:
         state.mode, state.failsafe = custom_mode, False
         begin(state)
     return answer
+
+
+def without_position(what: str) -> Answer:
+    """Return the refusal of what needs a position, while none is measured."""
+    return rejected_for_now(f"{what} denied: no position")
 
 
 def begin(state: FreeFlightState) -> None:
@@ -68,7 +75,7 @@ def return_home(state: FreeFlightState) -> None:
     if not state.land.in_air:
         state.stop()
         return
-    measured, home = state.navigation.estimate, state.home
+    measured, home = state.estimate, state.home
     assert measured is not None and home is not None
     get = state.parameters
     x, y, z = measured.position
@@ -138,7 +145,7 @@ def _hold(state: FreeFlightState) -> None:
 
 
 def _take_off(state: FreeFlightState) -> None:
-    measured = state.navigation.estimate
+    measured = state.estimate
     assert measured is not None
     altitude = state.take_off_altitude
     if math.isnan(altitude):

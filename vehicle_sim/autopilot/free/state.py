@@ -9,9 +9,11 @@ from idc_controller.rotations_float import Vector, euler_of
 from vehicle_sim.autopilot.flight_state import FlightState, PositionTarget
 from vehicle_sim.autopilot.free import parameters as names
 from vehicle_sim.autopilot.free.auto_flight import AutoFlight, Brake, Descent, Goal, Phase
+from vehicle_sim.autopilot.free.dead_reckoning import DeadReckoning
 from vehicle_sim.autopilot.free.mission import Mission
 from vehicle_sim.autopilot.free.position_control import PositionController, Reference, SpeedLimits
 from vehicle_sim.autopilot.free.smooth_motion import SmoothMotion
+from vehicle_sim.world.sensors import Measurement
 
 
 @dataclass(eq=False)
@@ -40,8 +42,19 @@ class FreeFlightState(FlightState):
 
     def __post_init__(self) -> None:
         airframe, settings = self.airframe, self.settings.free
+        self.reckoning = DeadReckoning(self.navigation.arrays, airframe.g, settings)
         self.motion = SmoothMotion(settings)
         self.controller = PositionController(airframe.mass, airframe.rotors.thrust_max, airframe.g, settings)
+
+    @property
+    def estimate(self) -> Measurement | None:
+        """The state to fly by, also while the position is not measured."""
+        estimate = self.navigation.estimate
+        return None if estimate is None else self.reckoning.corrected(estimate)
+
+    def has_position(self, now: float) -> bool:
+        """Return True if usable samples come, and the position is measured."""
+        return super().has_position(now) and not self.reckoning.is_lost
 
     @property
     def flown_mode(self) -> int:
@@ -84,7 +97,7 @@ class FreeFlightState(FlightState):
 
     def fly(self, phases: Sequence[Phase]) -> None:
         """Fly ``phases`` from the state of the vehicle, or of the set-point that it follows already."""
-        measured = self.navigation.estimate
+        measured = self.estimate
         assert measured is not None
         if self.flight is None:
             yaw = euler_of(measured.attitude)[2]
