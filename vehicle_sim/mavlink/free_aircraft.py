@@ -11,6 +11,7 @@ from vehicle_sim.autopilot.free.autopilot import FreeAutopilot
 from vehicle_sim.autopilot.free.mission import Mission
 from vehicle_sim.mavlink.aircraft import SimulatedAircraft
 from vehicle_sim.mavlink.control_owner import ControlOwner
+from vehicle_sim.mavlink.fence_areas import fence_of, rally_points_of
 from vehicle_sim.mavlink.geodesy import LocalFrame
 from vehicle_sim.mavlink.mission_steps import steps_of
 
@@ -114,3 +115,11 @@ class FreeAircraft(SimulatedAircraft):
             return denied(f"Mission denied: there is no item {index}")
         self._autopilot.set_current_item(index)
         return ACCEPTED
+
+    def take_fence(self, items: Sequence[MissionItem]) -> None:
+        """Have another fence from now on."""
+        self._autopilot.state.fence = fence_of(items, self._frame)
+
+    def take_rally_points(self, items: Sequence[MissionItem]) -> None:
+        """Have other rally points from now on."""
+        self._autopilot.state.rally_points = rally_points_of(items, self._frame, self._autopilot.home)

@@ -81,7 +81,7 @@ class AutoFlight:
         phase = self._phases[0] if self._phases else Brake()
         if isinstance(phase, Descent):
             return here[0], here[1], phase.ground
-        return _filled(phase.position, here) if isinstance(phase, Goal) else here
+        return filled(phase.position, here) if isinstance(phase, Goal) else here
 
     def advance(
         self,
@@ -126,7 +126,7 @@ class AutoFlight:
         self.place = goal.position
         if not math.isnan(sum(goal.position)):
             return goal
-        self.place = _filled(goal.position, motion.position)
+        self.place = filled(goal.position, motion.position)
         resolved = replace(goal, position=self.place)
         self._phases[0] = resolved
         return resolved
@@ -158,7 +158,7 @@ def turn_angle(yaw: float, angle: float, direction: int, is_relative: bool) -> f
     return ahead if direction > 0 or ahead == 0.0 else ahead - whole
 
 
-def _filled(place: Vector, here: Vector) -> Vector:
+def filled(place: Vector, here: Vector) -> Vector:
     """Return ``place``, of which what is NaN is that of ``here``."""
     x, y, z = (own if math.isnan(there) else there for there, own in zip(place, here, strict=True))
     return x, y, z

@@ -13,7 +13,7 @@ from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.failsafe import check_failsafes
 from vehicle_sim.autopilot.flight_state import TIME_TOLERANCE
 from vehicle_sim.autopilot.free import modes
-from vehicle_sim.autopilot.free.auto_flight import turn_angle
+from vehicle_sim.autopilot.free.auto_flight import filled, turn_angle
 from vehicle_sim.autopilot.free.failsafe import FREE, is_data_link_lost
 from vehicle_sim.autopilot.free.mission import Mission, MissionStep
 from vehicle_sim.autopilot.free.position_control import Reference
@@ -67,6 +67,9 @@ class FreeAutopilot(Autopilot):
         problem = super().arming_problem(now)
         if problem is None and is_data_link_lost(self.state, now):
             return "NAV_DLL_ACT is set, and no HEARTBEAT of a ground station (MAV_TYPE_GCS) comes"
+        estimate = self.state.estimate
+        if problem is None and estimate is not None and (breach := self.state.refused_by_fence(estimate.position)):
+            return f"beyond the fence: {breach}"
         return problem
 
     def arm(self, now: float, force: bool = False) -> Answer:
@@ -126,6 +129,10 @@ class FreeAutopilot(Autopilot):
             return rejected_for_now("Reposition denied: not flying")
         if state.reckoning.is_lost:
             return modes.without_position("Reposition")
+        estimate = state.estimate
+        assert estimate is not None
+        if breach := state.refused_by_fence(filled(position, estimate.position)):
+            return denied(f"Reposition denied: beyond the fence: {breach}")
         state.mode, state.failsafe = px4.MODE_HOLD, False
         state.speed = speed if speed > 0.0 else state.speed
         state.fly([state.goal(position, yaw, hold=math.inf)])

@@ -10,6 +10,8 @@ from vehicle_sim.autopilot.free.auto_flight import Brake, Descent, Phase
 from vehicle_sim.autopilot.free.mission import Action, MissionStep
 from vehicle_sim.autopilot.free.state import FreeFlightState
 
+_FLOWN = (Action.TAKE_OFF, Action.FLY, Action.LAND)
+"""What is flown for an item of the mission has a place."""
 _EXACT = 0.3  # m, horizontal distance to a place above which a landing begins
 
 
@@ -71,7 +73,10 @@ def fly_mission(state: FreeFlightState) -> None:
 
 
 def return_home(state: FreeFlightState) -> None:
-    """Climb, fly home and land, as PX4 by default: near home no higher than it is far (a cone of 45 deg)."""
+    """Climb, fly to the nearest of home and the rally points, and land, as PX4 by default.
+
+    Near there it climbs no higher than that is far (a cone of 45 deg), but at least as high as the rally point.
+    """
     if not state.land.in_air:
         state.stop()
         return
@@ -79,7 +84,8 @@ def return_home(state: FreeFlightState) -> None:
     assert measured is not None and home is not None
     get = state.parameters
     x, y, z = measured.position
-    distance, radius = math.hypot(home[0] - x, home[1] - y), get[names.ACCEPTANCE_RADIUS]
+    north, east, height = min((home, *state.rally_points), key=lambda place: math.hypot(place[0] - x, place[1] - y))
+    distance, radius = math.hypot(north - x, east - y), get[names.ACCEPTANCE_RADIUS]
     altitude = get[names.RETURN_ALTITUDE]
     if distance <= radius:
         altitude = 2.0 * distance
@@ -87,14 +93,14 @@ def return_home(state: FreeFlightState) -> None:
         if distance <= get[names.RETURN_NEAR]:
             altitude = min(distance, altitude)
         altitude = max(altitude, 2.0 * radius)
-    top = min(z, home[2] - altitude)
+    top = min(z, height, home[2] - altitude)
     low = min(home[2], state.ground) - get[names.DESCEND_ALTITUDE]
     state.fly(
         [
             Brake(),
             state.goal((math.nan, math.nan, top), radius=math.inf, looks_ahead=False),
-            state.goal((home[0], home[1], top), radius=_EXACT),
-            state.goal((home[0], home[1], max(top, low)), radius=_EXACT, looks_ahead=False),
+            state.goal((north, east, top), radius=_EXACT),
+            state.goal((north, east, max(top, low)), radius=_EXACT, looks_ahead=False),
             Descent(state.ground),
         ]
     )
@@ -102,7 +108,7 @@ def return_home(state: FreeFlightState) -> None:
 
 def _phases(state: FreeFlightState, step: MissionStep) -> list[Phase]:
     """Return what is flown for a step of the mission; empty: it needs no flight."""
-    if step.action not in (Action.TAKE_OFF, Action.FLY, Action.LAND):
+    if step.action not in _FLOWN:
         return []
     x, y, z = step.position
     phases: list[Phase] = []
@@ -194,6 +200,9 @@ def _when_disarmed(state: FreeFlightState, custom_mode: int) -> Answer:
 def _with_mission(state: FreeFlightState, custom_mode: int) -> Answer:
     if not state.mission.steps:
         return rejected_for_now("AUTO.MISSION denied: no mission")
+    for number, step in enumerate(state.mission.steps):
+        if step.action in _FLOWN and (breach := state.refused_by_fence(step.position)):
+            return denied(f"AUTO.MISSION denied: item {number} is beyond the fence: {breach}")
     if state.mission.finished:
         state.mission.restart()
     return ACCEPTED

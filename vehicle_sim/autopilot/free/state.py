@@ -10,10 +10,14 @@ from vehicle_sim.autopilot.flight_state import FlightState, PositionTarget
 from vehicle_sim.autopilot.free import parameters as names
 from vehicle_sim.autopilot.free.auto_flight import AutoFlight, Brake, Descent, Goal, Phase
 from vehicle_sim.autopilot.free.dead_reckoning import DeadReckoning
+from vehicle_sim.autopilot.free.fence import Fence
 from vehicle_sim.autopilot.free.mission import Mission
 from vehicle_sim.autopilot.free.position_control import PositionController, Reference, SpeedLimits
 from vehicle_sim.autopilot.free.smooth_motion import SmoothMotion
 from vehicle_sim.world.sensors import Measurement
+
+FENCE_NOTHING, FENCE_WARNING, FENCE_HOLD, FENCE_RETURN = 0, 1, 2, 3
+"""Values of GF_ACTION; any other: land."""
 
 
 @dataclass(eq=False)
@@ -35,6 +39,11 @@ class FreeFlightState(FlightState):
     mission: Mission = field(default_factory=Mission)
     take_off_altitude: float = math.nan
     """m above the ground, of the next take-off; NaN: the parameter's."""
+    fence: Fence = field(default_factory=Fence)
+    rally_points: tuple[Vector, ...] = ()
+    """Places beside home to which it may return (NED, m)."""
+    is_outside: bool = False
+    """It has breached the fence, and reacted to that."""
     speed: float = math.nan
     """m/s, horizontal, as commanded; NaN: the parameter's."""
     reference: Reference | None = None
@@ -73,6 +82,32 @@ class FreeFlightState(FlightState):
             return None
         end = reference.position if flight is None else flight.destination(reference.position)
         return PositionTarget(*reference, end)
+
+    def breach_of(self, place: Vector) -> str | None:
+        """Return how a place (NED, m; NaN: home's) breaches fence and limits about home; None: not, or no matter."""
+        get = self.parameters
+        if get[names.FENCE_ACTION] == FENCE_NOTHING or self.home is None:
+            return None
+        x, y, z = (own if math.isnan(there) else there for there, own in zip(place, self.home, strict=True))
+        distance, height = math.hypot(x - self.home[0], y - self.home[1]), self.home[2] - z
+        for value, limit, what in (
+            (distance, names.FENCE_DISTANCE, "from home"),
+            (height, names.FENCE_HEIGHT, "above home"),
+        ):
+            if value > get[limit] > 0.0:
+                return f"{value:.0f} m {what} ({limit} {get[limit]:g} m)"
+        return self.fence.breach(x, y)
+
+    def refused_by_fence(self, place: Vector) -> str | None:
+        """Return why a place (NED, m) may not be flown to; None: it may."""
+        binds = self.parameters[names.FENCE_ACTION] not in (FENCE_NOTHING, FENCE_WARNING)
+        return self.breach_of(place) if binds else None
+
+    def begin_failsafe(self, mode: int, now: float, *, until_setpoints: bool = False) -> None:
+        """Fly a ``mode`` that was not commanded, up to the next command or ``until_setpoints`` of OFFBOARD come."""
+        self.failsafe, self.failsafe_mode, self.failsafe_since = True, mode, now
+        if not until_setpoints:
+            self.mode = mode
 
     @property
     def limits(self) -> SpeedLimits:
