@@ -304,3 +304,17 @@ def test_refusal_of_set_points_and_of_offboard_names_the_reason():
         bench.run(2.0)
         assert bench.command(*OFFBOARD) == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
         assert "no set-points from you" in bench.texts()
+
+
+def test_link_loss_in_offboard_holds_though_set_points_of_a_companion_come():
+    with FreeBench() as bench:
+        bench.set_parameter("NAV_DLL_ACT", 1)
+        bench.set_parameter("COM_DL_LOSS_T", 5)
+        bench.send(GCS_HEARTBEAT)
+        bench.take_off()
+        bench.send(GCS_HEARTBEAT)
+        offboard(bench, local(VELOCITY_ONLY, velocity=(1.0, 0.0, 0.0)))
+        bench.messages.clear()
+        bench.run(8.0)
+        assert bench.mode_of() == "AUTO.LOITER" and bench.vehicles[0].autopilot.failsafe
+        assert bench.texts().count("No ground station") == 1

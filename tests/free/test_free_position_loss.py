@@ -98,3 +98,29 @@ def test_imu_measures_the_specific_force():
         thrust = bench.swarm.world.thrusts[0] / 0.7
         assert imu.zacc == pytest.approx(-thrust, abs=0.2)  # along the rotors, whatever it does
         assert math.hypot(imu.xacc, imu.yacc) < 0.2
+
+
+def test_vehicle_is_not_armed_before_its_position_is_back():
+    with losing_position(6.0, duration=16.0) as bench:
+        bench.take_off(3.0)
+        assert bench.run(12.0, lambda: bench.vehicles[0].autopilot.failsafe)
+        assert bench.run(12.0, lambda: not bench.armed())
+        state = bench.vehicles[0].autopilot.state
+        assert not state.has_position(bench.now)
+        assert bench.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1) == REJECTED
+        assert bench.run(16.0, lambda: state.has_position(bench.now))
+        assert bench.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1) == mavlink.MAV_RESULT_ACCEPTED
+
+
+def test_loss_of_the_position_in_offboard_by_position_lands_though_set_points_come():
+    with losing_position(8.0) as bench:
+        bench.take_off(5.0)
+        bench.streaming[1] = mavlink.MAVLink_set_position_target_local_ned_message(
+            0, 1, 1, 1, 0b1101_1111_1000, 3, 0, -5, *[0.0] * 8
+        )
+        bench.run(0.3)
+        assert bench.command(*OFFBOARD) == mavlink.MAV_RESULT_ACCEPTED
+        bench.messages.clear()
+        assert bench.run(12.0, lambda: bench.vehicles[0].autopilot.failsafe)
+        assert bench.run(15.0, lambda: not bench.armed())
+        assert bench.texts().count("Position lost") == 1 and "Set-points are back" not in bench.texts()

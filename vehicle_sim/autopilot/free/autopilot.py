@@ -65,6 +65,8 @@ class FreeAutopilot(Autopilot):
     def arming_problem(self, now: float) -> str | None:
         """See :meth:`.Autopilot.arming_problem`; as in PX4 it wants the ground station whose loss it would react to."""
         problem = super().arming_problem(now)
+        if problem is None and self.state.reckoning.is_lost:
+            return "no position"
         if problem is None and is_data_link_lost(self.state, now):
             return "NAV_DLL_ACT is set, and no HEARTBEAT of a ground station (MAV_TYPE_GCS) comes"
         estimate = self.state.estimate
@@ -207,7 +209,7 @@ class FreeAutopilot(Autopilot):
         """See :meth:`.Autopilot.feel`; in flight the position goes on by it while none is measured."""
         super().feel(force, now)
         state = self.state
-        if state.armed and state.specific_force is not None:
+        if (state.armed or state.reckoning.is_lost) and state.specific_force is not None:
             is_clipped = state.specific_force != force
             state.reckoning.advance(state.specific_force, is_clipped=is_clipped, now=now)
 
