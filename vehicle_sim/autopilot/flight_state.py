@@ -31,6 +31,13 @@ class PositionTarget(NamedTuple):
     destination: Vector
 
 
+class Orbit(NamedTuple):
+    """A circle about a ``centre`` (NED, m); ``radius`` (m) negative counter-clockwise."""
+
+    centre: Vector
+    radius: float
+
+
 @dataclass(eq=False)
 class FlightState:
     """The state that all parts of the autopilot share: parts with a state of their own, and that of the flight.
@@ -97,6 +104,11 @@ class FlightState:
             return None
         plan = self.hold.plan
         return PositionTarget(*plan.at(now), plan.yaw, math.nan, plan.control_points[-1])
+
+    @property
+    def orbit(self) -> Orbit | None:
+        """The circle that is flown; None: none."""
+        return None
 
     @property
     def is_up(self) -> bool:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from gcs.mavlink import px4
-from gcs.mavlink.services.aircraft import Place, Reposition, Sender, Turn
+from gcs.mavlink.services.aircraft import Orbit, Place, Reposition, Sender, Turn
 from gcs.mavlink.services.answer import Answer, denied
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.modes import team_only
@@ -62,6 +62,10 @@ class CoupledAircraft(SimulatedAircraft):
     def turn(self, turn: Turn, now: float) -> Answer:
         """Refuse."""
         return team_only("Turn")
+
+    def orbit(self, orbit: Orbit, now: float) -> Answer:
+        """Refuse."""
+        return team_only("Orbit")
 
     def set_home(self, place: Place | None, now: float) -> Answer:
         """Refuse: home is the origin of the local frame."""

@@ -4,11 +4,14 @@ import math
 from collections.abc import Callable, Sequence
 
 from gcs.mavlink import px4
-from gcs.mavlink.services.aircraft import Place, Reposition, Turn
+from gcs.mavlink.services.aircraft import Orbit, Place, Reposition, Turn
 from gcs.mavlink.services.answer import ACCEPTED, Answer, denied, rejected_for_now
 from gcs.mavlink.services.mission_item import MissionItem
+from idc_controller.rotations_float import Vector
 from vehicle_sim.autopilot.free.autopilot import FreeAutopilot
+from vehicle_sim.autopilot.free.circling import Heading
 from vehicle_sim.autopilot.free.mission import Mission
+from vehicle_sim.autopilot.free.orbit import begin_orbit
 from vehicle_sim.mavlink.aircraft import SimulatedAircraft
 from vehicle_sim.mavlink.control_owner import ControlOwner
 from vehicle_sim.mavlink.fence_areas import fence_of, rally_points_of
@@ -38,16 +41,22 @@ class FreeAircraft(SimulatedAircraft):
 
     def reposition(self, goal: Reposition, now: float) -> Answer:
         """Fly to a place and hold there."""
-        down = self._frame.altitude - goal.altitude
-        if math.isfinite(goal.latitude) and math.isfinite(goal.longitude):
-            altitude = goal.altitude
-            if math.isnan(altitude):
-                estimate = self._autopilot.state.estimate
-                altitude = self._frame.altitude - (0.0 if estimate is None else estimate.position[2])
-            north, east, down = self._frame.local(goal.latitude, goal.longitude, altitude)
-        else:
-            north = east = math.nan
-        return self._autopilot.go_to((north, east, down), goal.yaw, goal.speed, now)
+        return self._autopilot.go_to(self._local(Place(*goal[:3])), goal.yaw, goal.speed, now)
+
+    def _local(self, place: Place) -> Vector:
+        """Return a place (NED, m), of which what is not given is NaN."""
+        if not (math.isfinite(place.latitude) and math.isfinite(place.longitude)):
+            return math.nan, math.nan, self._frame.altitude - place.altitude
+        altitude = place.altitude
+        if math.isnan(altitude):
+            estimate = self._autopilot.state.estimate
+            altitude = self._frame.altitude - (0.0 if estimate is None else estimate.position[2])
+        return self._frame.local(place.latitude, place.longitude, altitude)
+
+    def orbit(self, orbit: Orbit, now: float) -> Answer:
+        """Fly on a circle."""
+        centre, heading = self._local(orbit.centre), Heading(orbit.heading)
+        return begin_orbit(self._autopilot.state, centre, orbit.radius, orbit.speed, heading, orbit.angle)
 
     def change_speed(self, speed: float, now: float) -> Answer:
         """Fly with another horizontal speed (m/s) from now on."""

@@ -81,6 +81,19 @@ def nav_controller_output(report: Report, now: float) -> Built:
     )
 
 
+def orbit_execution_status(report: Report, now: float) -> Built:
+    """The circle of an orbit; there is none otherwise."""
+    orbit = report.autopilot.state.orbit
+    if orbit is None:
+        return ()
+    latitude, longitude, altitude = report.frame.place(orbit.centre)
+    return packed(
+        mavlink.MAVLink_orbit_execution_status_message(
+            report.time_boot_us(now), orbit.radius, mavlink.MAV_FRAME_GLOBAL_INT, latitude, longitude, altitude * 1e-3
+        )
+    )
+
+
 def servo_output_raw(report: Report, now: float) -> Built:
     """The commanded rotor speeds as pulse widths: 1000 us is none, 2000 us the largest."""
     pulses = [round(_PULSE_MIN + _PULSE_RANGE * share) for share in _speed_shares(report)]
@@ -126,6 +139,7 @@ MESSAGES = {
     mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET: attitude_target,
     mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED: position_target,
     mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT: global_position_target,
+    mavlink.MAVLINK_MSG_ID_ORBIT_EXECUTION_STATUS: orbit_execution_status,
     mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: nav_controller_output,
     mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW: servo_output_raw,
     mavlink.MAVLINK_MSG_ID_ACTUATOR_OUTPUT_STATUS: actuator_output_status,

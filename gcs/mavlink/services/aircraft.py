@@ -38,6 +38,20 @@ class Turn(NamedTuple):
     is_relative: bool
 
 
+class Orbit(NamedTuple):
+    """A circle about a place, as MAV_CMD_DO_ORBIT commands it; NaN: the aircraft's own.
+
+    ``radius`` in m, negative counter-clockwise; ``speed`` in m/s; ``heading`` ORBIT_YAW_BEHAVIOUR; ``angle`` in rad,
+    after which it holds, infinite: for ever; ``centre`` NaN: where it is.
+    """
+
+    radius: float
+    speed: float
+    heading: int
+    angle: float
+    centre: Place
+
+
 class Reposition(NamedTuple):
     """Where MAV_CMD_DO_REPOSITION sends an aircraft; NaN: as it is now.
 
@@ -85,6 +99,9 @@ class Aircraft(Protocol):
 
     def turn(self, turn: Turn, now: float) -> Answer:
         """Change the heading where it is."""
+
+    def orbit(self, orbit: Orbit, now: float) -> Answer:
+        """Fly on a circle."""
 
     def set_home(self, place: Place | None, now: float) -> Answer:
         """Return to a ``place`` from now on; None: to where it is."""

@@ -8,7 +8,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
 from gcs.mavlink.layout import PackedRun
-from gcs.mavlink.services.aircraft import Aircraft, MessageSource, Place, Reposition, Turn
+from gcs.mavlink.services.aircraft import Aircraft, MessageSource, Orbit, Place, Reposition, Turn
 from gcs.mavlink.services.answer import ACCEPTED, UNSUPPORTED_FRAME, Answer, denied
 from gcs.mavlink.services.dispatcher import Command, Request
 from gcs.mavlink.services.streams import whole
@@ -23,6 +23,8 @@ _AIRSPEED, _GROUND_SPEED = 0, 1
 _UNCHANGED = -1.0
 _PAUSE, _CONTINUE = 0.0, 1.0
 _ITEMS_MAX = 1 << 16
+_ORBIT_HEADINGS = mavlink.ORBIT_YAW_BEHAVIOUR_HOLD_FRONT_TANGENT_TO_CIRCLE + 1
+"""Those of a remote control are not."""
 _WHOLE_TURN = 360.0
 
 
@@ -41,6 +43,7 @@ class FlightCommands:
             mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: self._entering(px4.MODE_RETURN),
             mavlink.MAV_CMD_DO_REPOSITION: self._reposition,
             mavlink.MAV_CMD_CONDITION_YAW: self._turn,
+            mavlink.MAV_CMD_DO_ORBIT: self._orbit,
             mavlink.MAV_CMD_DO_CHANGE_SPEED: self._change_speed,
             mavlink.MAV_CMD_DO_SET_HOME: self._set_home,
             mavlink.MAV_CMD_MISSION_START: self._start_mission,
@@ -105,6 +108,26 @@ class FlightCommands:
         rate = math.radians(message.param2) if message.param2 > 0.0 else math.nan
         turn = Turn(math.radians(message.param1), rate, int(message.param3), message.param4 == 1.0)
         return self._aircraft.turn(turn, request.now)
+
+    def _orbit(self, message: Command, request: Request) -> Answer:
+        """Fly on a circle: param1 radius, negative to the left, param2 m/s, param3 heading, param4 rad (0: no end)."""
+        place = self._place(message, request)
+        if place is None:
+            return UNSUPPORTED_FRAME
+        if (wrong := _wrong_place("Orbit", place)) is not None:
+            return wrong
+        radius, speed, angle = message.param1, message.param2, message.param4
+        if radius == 0.0 or math.isinf(radius):
+            return denied(f"Orbit denied: the radius is {radius:g} m", 1)
+        if speed <= 0.0 or math.isinf(speed):
+            return denied(f"Orbit denied: {speed:g} m/s is no speed", 2)
+        heading = 0 if math.isnan(message.param3) else whole(message.param3, _ORBIT_HEADINGS)
+        if heading is None:
+            return denied(f"Orbit denied: heading {message.param3:g} is none of 0, 1, 2, 3", 3)
+        if angle < 0.0:
+            return denied(f"Orbit denied: {angle:g} rad is no angle", 4)
+        angle = angle if angle > 0.0 else math.inf
+        return self._aircraft.orbit(Orbit(radius, speed, heading, angle, place), request.now)
 
     def _set_home(self, message: Command, request: Request) -> Answer:
         """Return to a place from now on (param1 0), or to where it is (1); angles of home are not kept."""

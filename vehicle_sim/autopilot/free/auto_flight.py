@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from gcs.config.vehicle_settings import FreeFlightSettings
 from idc_controller.rotations_float import Vector
+from vehicle_sim.autopilot.free.circling import CirclePath, Circling
 from vehicle_sim.autopilot.free.position_control import SpeedLimits
 from vehicle_sim.autopilot.free.smooth_motion import SmoothMotion
 from vehicle_sim.world.sensors import Measurement
@@ -41,7 +42,7 @@ class Descent:
     ground: float
 
 
-Phase = Goal | Brake | Descent
+Phase = Goal | Brake | Descent | CirclePath
 
 
 class AutoFlight:
@@ -54,6 +55,7 @@ class AutoFlight:
         """The last goal (NED, m)."""
         self._since: float | None = None
         """When the vehicle arrived at the goal of the phase (s)."""
+        self._circling: Circling | None = None
         self._turn_left = 0.0
         """Commanded change of the heading that is still to be made (rad)."""
         self._turn_rate = 0.0
@@ -62,6 +64,11 @@ class AutoFlight:
     def finished(self) -> bool:
         """Return True if no phase is left."""
         return not self._phases
+
+    @property
+    def circle(self) -> CirclePath | None:
+        """The circle that is flown, or flown to; None: none."""
+        return next((phase for phase in self._phases if isinstance(phase, CirclePath)), None)
 
     @property
     def is_landing(self) -> bool:
@@ -104,6 +111,12 @@ class AutoFlight:
         if isinstance(phase, Descent):
             sinking = landing_speed(phase.ground - motion.position[2])
             motion.with_velocity((0.0, 0.0, sinking), step)
+        elif isinstance(phase, CirclePath):
+            self.place = phase.centre
+            self._circling = self._circling or Circling(phase, self._settings.acceleration)
+            self._circling.advance(motion, step)
+            if self._circling.is_over:
+                self._next()
         elif isinstance(phase, Brake):
             motion.with_velocity((0.0, 0.0, 0.0), step)
             if math.hypot(*motion.velocity) < self._settings.rest_speed:
@@ -119,7 +132,7 @@ class AutoFlight:
 
     def _next(self) -> None:
         del self._phases[0]
-        self._since = None
+        self._since = self._circling = None
 
     def _resolved(self, goal: Goal, motion: SmoothMotion) -> Goal:
         """Return the goal with its place in full, which then stays."""

@@ -27,6 +27,7 @@ _GROUNDED_IN_OFFBOARD = 3.0  # s; until a vehicle that set-points have put on th
 _OF_OTHER_SPEEDS = {
     px4.MODE_OFFBOARD: "flies the speed of its set-points",
     px4.MODE_LAND: "has no horizontal speed",
+    px4.MODE_ORBIT: "flies the speed of its command",
 }
 """Modes in which no change of speed has an effect."""
 
@@ -230,6 +231,9 @@ class FreeAutopilot(Autopilot):
         elif state.mode == px4.MODE_TAKEOFF:
             state.mode = px4.MODE_HOLD
             state.fly([state.goal(state.flight.place, hold=math.inf)])
+        elif state.mode == px4.MODE_ORBIT:
+            state.mode = px4.MODE_HOLD
+            state.hold_here()
 
     def _check_ground(self, estimate: Measurement, now: float) -> None:
         """Disarm a vehicle that sinks no more though it is commanded to."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from gcs.mavlink import px4
 from idc_controller.rotations_float import Vector, euler_of
-from vehicle_sim.autopilot.flight_state import FlightState, PositionTarget
+from vehicle_sim.autopilot.flight_state import FlightState, Orbit, PositionTarget
 from vehicle_sim.autopilot.free import parameters as names
 from vehicle_sim.autopilot.free.auto_flight import AutoFlight, Brake, Descent, Goal, Phase
 from vehicle_sim.autopilot.free.dead_reckoning import DeadReckoning
@@ -82,6 +82,12 @@ class FreeFlightState(FlightState):
             return None
         end = reference.position if flight is None else flight.destination(reference.position)
         return PositionTarget(*reference, end)
+
+    @property
+    def orbit(self) -> Orbit | None:
+        """The circle that is flown; None: none."""
+        circle = None if self.flight is None else self.flight.circle
+        return None if circle is None else Orbit(circle.centre, circle.radius)
 
     def breach_of(self, place: Vector) -> str | None:
         """Return how a place (NED, m; NaN: home's) breaches fence and limits about home; None: not, or no matter."""
