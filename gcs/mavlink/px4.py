@@ -78,6 +78,7 @@ def decode_custom_mode(custom_mode: int) -> tuple[int, int]:
 MODE_MANUAL = encode_custom_mode(MainMode.MANUAL)
 MODE_ALTCTL = encode_custom_mode(MainMode.ALTCTL)
 MODE_POSCTL = encode_custom_mode(MainMode.POSCTL)
+MODE_ORBIT = encode_custom_mode(MainMode.POSCTL, 1)
 MODE_OFFBOARD = encode_custom_mode(MainMode.OFFBOARD)
 MODE_TAKEOFF = encode_custom_mode(MainMode.AUTO, AutoMode.TAKEOFF)
 MODE_HOLD = encode_custom_mode(MainMode.AUTO, AutoMode.LOITER)
@@ -89,6 +90,7 @@ MODE_LAND = encode_custom_mode(MainMode.AUTO, AutoMode.LAND)
 STANDARD_MODES: dict[int, int] = {
     MODE_POSCTL: mavlink.MAV_STANDARD_MODE_POSITION_HOLD,
     MODE_ALTCTL: mavlink.MAV_STANDARD_MODE_ALTITUDE_HOLD,
+    MODE_ORBIT: mavlink.MAV_STANDARD_MODE_ORBIT,
     MODE_RETURN: mavlink.MAV_STANDARD_MODE_SAFE_RECOVERY,
     MODE_MISSION: mavlink.MAV_STANDARD_MODE_MISSION,
     MODE_LAND: mavlink.MAV_STANDARD_MODE_LAND,
@@ -100,6 +102,7 @@ MODE_LABELS: dict[int, str] = {
     MODE_MANUAL: "Manual",
     MODE_ALTCTL: "Altitude",
     MODE_POSCTL: "Position",
+    MODE_ORBIT: "Orbit",
     MODE_OFFBOARD: "Offboard",
     MODE_TAKEOFF: "Takeoff",
     MODE_HOLD: "Hold",
@@ -118,6 +121,8 @@ def standard_mode(custom_mode: int) -> int:
 def mode_name(custom_mode: int) -> str:
     """Return the name: ``OFFBOARD``, ``AUTO.LOITER``, or the numbers of a mode that is not known."""
     main, sub = decode_custom_mode(custom_mode)
+    if custom_mode == MODE_ORBIT:
+        return "POSCTL.ORBIT"
     try:
         name = MainMode(main).name
         return f"{name}.{AutoMode(sub).name}" if main == MainMode.AUTO and sub else name

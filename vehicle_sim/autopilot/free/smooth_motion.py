@@ -70,11 +70,30 @@ class SmoothMotion:
         half = 0.5 * step
         self.position = x + half * (v_x + w_x), y + half * (v_y + w_y), z + half * (v_z + w_z)
 
+    def on_circle(self, centre: Vector, radius: float, turn: float, speed: float, step: float) -> None:
+        """Move on by an angle ``turn`` (rad, clockwise) about a ``centre`` at its altitude, in a ``step`` (s).
+
+        ``speed`` (m/s) is that at its end.
+        """
+        angle = math.atan2(self.position[1] - centre[1], self.position[0] - centre[0]) + turn
+        cos, sin, along = math.cos(angle), math.sin(angle), math.copysign(speed, turn)
+        inwards = speed * speed / radius
+        a_x, a_y = -inwards * cos, -inwards * sin
+        self._jerk = (a_x - self._acceleration[0]) / step, (a_y - self._acceleration[1]) / step
+        self.position = centre[0] + radius * cos, centre[1] + radius * sin, centre[2]
+        self.velocity, self._acceleration = (-along * sin, along * cos, 0.0), (a_x, a_y, 0.0)
+
     def turn_to(self, yaw: float, step: float) -> None:
         """Turn towards a ``yaw`` (rad), the shorter way, for a ``step`` (s)."""
         change_max = self._settings.yaw_rate * step
         left = math.remainder(yaw - self.yaw, 2.0 * math.pi)
         self.yaw = math.remainder(self.yaw + min(max(left, -change_max), change_max), 2.0 * math.pi)
+
+    def turn_by(self, angle: float, rate: float, step: float) -> float:
+        """Turn by at most ``angle`` (rad) with ``rate`` (rad/s) for a ``step`` (s); return what was turned."""
+        change = min(max(angle, -rate * step), rate * step)
+        self.yaw = math.remainder(self.yaw + change, 2.0 * math.pi)
+        return change
 
     def _acceleration_for(self, change: float, limit: float) -> float:
         """Return the acceleration (m/s2) for a ``change`` of the velocity (m/s), which the jerk can still take back."""
