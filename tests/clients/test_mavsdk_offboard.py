@@ -14,7 +14,7 @@ from mavsdk.plugins.offboard import (
     VelocityBodyYawspeed,
     VelocityNedYaw,
 )
-from mavsdk_client import Steps, first, fly
+from mavsdk_client import Steps, first, fly, second
 
 pytestmark = pytest.mark.slow
 
@@ -86,7 +86,7 @@ def flown(free_swarm):
         )  # fmt: skip
         await level()
         steps.results["active"] = await offboard.is_active()
-        await steps("stop and land", offboard.stop(), client.land())
+        await steps("stop and land", offboard.stop(), second(telemetry.subscribe_attitude_euler()), client.land())
 
     fly(free_swarm.sdk_port(1), program)
     return steps

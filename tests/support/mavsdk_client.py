@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator, Callable, Coroutine
+from collections.abc import AsyncGenerator, Callable, Coroutine
 from typing import Any
 
 from client_swarm import ClientSwarm, Track
 from mavsdk.asyncio import Configuration, Mavsdk
 from mavsdk.asyncio.plugins.action import ActionAsync
-from mavsdk.asyncio.plugins.mavlink_direct import MavlinkDirectAsync
 from mavsdk.asyncio.plugins.mission import MissionAsync
 from mavsdk.asyncio.plugins.mission_raw import MissionRawAsync
 from mavsdk.asyncio.plugins.offboard import OffboardAsync
@@ -19,16 +18,17 @@ from mavsdk.asyncio.plugins.telemetry import TelemetryAsync
 from mavsdk.component_type import ComponentType
 from programs import PATIENCE
 
+Program = Callable[["Client"], Coroutine[Any, Any, Any]]
+
 
 class Client:
     """The plugins of one vehicle."""
 
-    def __init__(self, system: Any) -> None:
-        self.system = system
+    def __init__(self, mavsdk: Any, system: Any) -> None:
+        self.mavsdk, self.system = mavsdk, system
         self.action, self.offboard = ActionAsync(system), OffboardAsync(system)
         self.telemetry, self.param = TelemetryAsync(system), ParamAsync(system)
         self.mission, self.mission_raw = MissionAsync(system), MissionRawAsync(system)
-        self.direct = MavlinkDirectAsync(system)
 
     async def height_is(self, height: float, tolerance: float = 0.15) -> None:
         """Wait for a message with this height above home (m)."""
@@ -58,14 +58,11 @@ class Client:
     async def disarmed(self) -> None:
         """Wait until it is disarmed, and its rotors stand."""
         await first(self.telemetry.subscribe_armed(), lambda armed: not armed)
-        outputs = self.telemetry.subscribe_actuator_output_status()
-        async with contextlib.aclosing(outputs):
-            for _ in range(2):  # they come once a second
-                output = await anext(outputs)
+        output = await second(self.telemetry.subscribe_actuator_output_status())  # they come once a second
         assert not output.active and not any(output.actuator)
 
 
-async def first(messages: AsyncIterator[Any], wanted: Callable[[Any], bool] = lambda _: True) -> Any:
+async def first(messages: AsyncGenerator[Any], wanted: Callable[[Any], bool] = lambda _: True) -> Any:
     """Return the first of these messages that is wanted."""
     async with contextlib.aclosing(messages):
         async for message in messages:
@@ -74,18 +71,34 @@ async def first(messages: AsyncIterator[Any], wanted: Callable[[Any], bool] = la
     raise AssertionError("the stream ended")
 
 
-def fly(port: int, program: Callable[[Client], Coroutine[Any, Any, Any]]) -> Any:
+async def second(messages: AsyncGenerator[Any]) -> Any:
+    """Return the second of these messages: between both an interval has passed."""
+    async with contextlib.aclosing(messages):
+        await anext(messages)
+        return await anext(messages)
+
+
+def fly(port: int, program: Program) -> Any:
     """Run a program with a client of the vehicle that sends to a port, and return what it returns."""
+    return asyncio.run(_connected(port, program))
 
-    async def connected() -> Any:
-        configuration = Configuration.create_with_component_type(ComponentType.GROUND_STATION)
-        async with Mavsdk(configuration) as mavsdk:
-            await mavsdk.add_any_connection(f"udpin://127.0.0.1:{port}")
-            system = await mavsdk.first_autopilot(timeout_s=PATIENCE)
-            assert system is not None, "no vehicle was found"
-            return await asyncio.wait_for(program(Client(system)), PATIENCE)
 
-    return asyncio.run(connected())
+def together(programs: dict[int, Program]) -> None:
+    """Run programs at the same time, each with a client of the vehicle that sends to its port."""
+
+    async def all_of_them() -> None:
+        await asyncio.gather(*(_connected(port, program) for port, program in programs.items()))
+
+    asyncio.run(all_of_them())
+
+
+async def _connected(port: int, program: Program) -> Any:
+    configuration = Configuration.create_with_component_type(ComponentType.GROUND_STATION)
+    async with Mavsdk(configuration) as mavsdk:
+        await mavsdk.add_any_connection(f"udpin://127.0.0.1:{port}")
+        system = await mavsdk.first_autopilot(timeout_s=PATIENCE)
+        assert system is not None, "no vehicle was found"
+        return await asyncio.wait_for(program(Client(mavsdk, system)), PATIENCE)
 
 
 class Steps:
