@@ -149,8 +149,8 @@ ANEW := anew
 endif
 endif
 
-# Without build isolation nothing is fetched that constraints.txt does not name.
-$(INSTALLED): pyproject.toml constraints.txt $(ANEW)
+# Without build isolation nothing is fetched that constraints.txt and mavproxy.txt do not name.
+$(INSTALLED): pyproject.toml constraints.txt tests/packaging/mavproxy.txt $(ANEW)
 	@for python in $(PYTHONS); do \
 		if $$python -c '$(USABLE)' >/dev/null 2>&1; then \
 			echo "Installing into $(VENV) with $$($$python --version) (once, two to three minutes)"; \
@@ -165,6 +165,8 @@ $(INSTALLED): pyproject.toml constraints.txt $(ANEW)
 		exit 1; }; \
 		echo "pybullet has no wheel for this Python: compiling it, some twelve minutes of CPU; pip keeps the wheel"; }
 	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r constraints.txt
+	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes --no-deps \
+		-r tests/packaging/mavproxy.txt
 	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps -e .
 	@touch $@
 

@@ -1,4 +1,4 @@
-"""Compare the figures of README.md and docs/*.md with what docs/claims.toml says of them.
+"""Compare the figures of README.md and docs/**.md with what docs/claims.toml says of them.
 
   python tests/claims/claims.py                   settings, and what takes seconds; minutes: by the last record
   python tests/claims/claims.py --all             run the commands that take minutes and were not run at this commit
@@ -35,7 +35,7 @@ FILE, RECORD = ROOT / "docs" / "claims.toml", ROOT / "docs" / "measured.json"
 
 def documents() -> dict[str, str]:
     """Return the texts whose figures have claims, by name."""
-    paths = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    paths = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
     return {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in paths}
 
 

@@ -9,7 +9,7 @@ from importlib import metadata
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-LOCK = ROOT / "constraints.txt"
+LOCKS = ROOT / "constraints.txt", ROOT / "tests" / "packaging" / "mavproxy.txt"
 PAGE = ROOT / "tests" / "packaging" / "page" / "package.json"
 ELSEWHERE = {"cmeel-qhull": "Qhull", "cycler": "BSD-3-Clause", "kiwisolver": "BSD-3-Clause", "pymavlink": "LGPL-3.0"}
 """Licences whose names stand in the text of the licence, not among the metadata."""
@@ -18,7 +18,8 @@ cooplift
 Copyright: see the history of its source; licensed under the Apache License, Version 2.0 (LICENSE).
 
 It uses the packages below, which are installed beside it, unchanged, from their own distributions. Each is under the
-licence that it states itself; the text is in its folder *.dist-info. Versions are those of constraints.txt.
+licence that it states itself; the text is in its folder *.dist-info. Versions are those of constraints.txt and, of
+MAVProxy and pyserial, which only tests need, of tests/packaging/mavproxy.txt.
 Written by `make docs`.
 """
 
@@ -29,8 +30,9 @@ def normal(name: str) -> str:
 
 
 def locked() -> dict[str, str]:
-    """Return the version of every package of the lock file."""
-    pins = re.findall(r"^([\w.-]+)==([\w.]+)", LOCK.read_text(encoding="utf-8"), re.MULTILINE)
+    """Return the version of every package of the lock files."""
+    texts = [lock.read_text(encoding="utf-8") for lock in LOCKS]
+    pins = [pin for text in texts for pin in re.findall(r"^([\w.-]+)==([\w.]+)", text, re.MULTILINE)]
     return {normal(name): version for name, version in pins}
 
 

@@ -52,12 +52,16 @@ def pins(name):
     return {normal(pin): version for pin, version in re.findall(r"^([\w.-]+)==([\w.]+)", text, re.MULTILINE)}
 
 
-def test_all_dependencies_are_locked_with_hashes():
-    text = (ROOT / "constraints.txt").read_text(encoding="utf-8")
+LOCKS = {"constraints.txt": names(DECLARED), "tests/packaging/mavproxy.txt": {"mavproxy", "pyserial"}}
+
+
+@pytest.mark.parametrize("lock, packages", LOCKS.items())
+def test_all_dependencies_are_locked_with_hashes(lock, packages):
+    text = (ROOT / lock).read_text(encoding="utf-8")
     entries = [entry for entry in re.split(r"^(?=[\w.-]+==)", text, flags=re.MULTILINE) if not entry.startswith("#")]
-    assert len(entries) == len(pins("constraints.txt"))
+    assert len(entries) == len(pins(lock))
     assert all(re.fullmatch(r"\S+( \\\n    --hash=sha256:[0-9a-f]{64})+\n", entry) for entry in entries)
-    assert pins("constraints.txt").keys() >= names(DECLARED)
+    assert pins(lock).keys() >= packages
     assert "://" not in text  # any index will do
 
 
@@ -75,7 +79,7 @@ def test_lowest_versions_are_those_of_the_declared_dependencies():
 def test_notice_names_every_locked_package_with_a_licence():
     lines = (ROOT / "NOTICE").read_text(encoding="utf-8").splitlines()
     stated = dict(line.split(": ", 1) for line in lines if re.match(r"[\w.-]+ [\d.]+: ", line))
-    assert stated.keys() == {f"{name} {version}" for name, version in pins("constraints.txt").items()}
+    assert stated.keys() == {f"{name} {version}" for lock in LOCKS for name, version in pins(lock).items()}
     assert "not stated" not in stated.values()
     assert [stated[f"{name} {pins('constraints.txt')[name]}"] for name in ("pymavlink", "hypothesis")] == [
         "LGPL-3.0",

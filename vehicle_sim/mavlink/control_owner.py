@@ -11,14 +11,13 @@ from vehicle_sim.autopilot.setpoint_stream import Setpoint
 
 
 class _Stream:
-    """The last two set-points of one sender."""
+    """The last set-point of one sender."""
 
-    __slots__ = ("last", "previous_time", "time")
+    __slots__ = ("last", "time")
 
     def __init__(self, setpoint: Setpoint, now: float) -> None:
         self.last = setpoint
         self.time = now
-        self.previous_time = float("-inf")
 
 
 class ControlOwner:
@@ -67,7 +66,6 @@ class ControlOwner:
             if 0 < late < 1e3 * self._settings.reordering_max and self._is_fresh(stream.time, now):
                 return
             stream.last = setpoint
-            stream.previous_time = stream.time
             stream.time = now
         if sender == self._owner and self._autopilot.wants_setpoints:
             self._autopilot.follow(setpoint, now)
@@ -80,18 +78,13 @@ class ControlOwner:
         self._refused[sender] = why, now
 
     def enter_offboard(self, sender: Sender, now: float) -> Answer:
-        """Enter OFFBOARD on the sender's own set-points, of which two must have come in time."""
+        """Enter OFFBOARD on the sender's own set-points, of which one must have come in time, as in PX4."""
         stream = self._streams.get(sender)
         if stream is None or not self._is_fresh(stream.time, now):
             why, refused_at = self._refused.get(sender, ("", -math.inf))
             if not self._is_fresh(refused_at, now):
                 why = "no set-points from you"
             return rejected_for_now(f"OFFBOARD denied: {why}")
-        if not self._is_fresh(stream.previous_time, stream.time):
-            limit = self._autopilot.state.setpoint_loss_time
-            return rejected_for_now(
-                f"OFFBOARD denied: set-points from you are to come within {limit:g} s of each other"
-            )
         answer = self._autopilot.enter_offboard(stream.last, stream.time, now)
         self._owner = sender
         return answer

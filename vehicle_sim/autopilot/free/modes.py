@@ -154,7 +154,7 @@ def _take_off(state: FreeFlightState) -> None:
     measured = state.estimate
     assert measured is not None
     altitude = state.take_off_altitude
-    if math.isnan(altitude):
+    if not altitude > 0.0:  # none, or not above the ground: some clients take heights for altitudes above the sea
         altitude = state.parameters[px4.PARAM_TAKEOFF_ALTITUDE]
     top = min(state.ground - altitude, measured.position[2])
     if state.land.in_air:
