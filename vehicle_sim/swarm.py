@@ -207,6 +207,8 @@ class Swarm:
     def _onboard(self, states: Array) -> None:
         """Let all vehicles take an onboard step, and record what they fly where it changes."""
         now = self.world.time
+        if isinstance(self.world, FreeWorld):
+            self._team.feel(self.world.specific_forces(), now)
         changed = self._team.step(states, now)
         self._wrenches = self._team.wrenches()
         if self._truth is None or (self._modes_recorded and not changed):

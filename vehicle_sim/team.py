@@ -8,6 +8,7 @@ import numpy as np
 from gcs.config import SystemConfig
 from gcs.config.tables import SensorsConfig
 from idc_controller.arrays import Array
+from idc_controller.rotations_float import Vector
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.autopilot.onboard_loop import step_together
 from vehicle_sim.faults.disturbances import Disturbances
@@ -69,6 +70,11 @@ class Team:
             reported = vehicle.autopilot.state.navigation.reported
             vehicle.report(self._faults.reported_sample(vehicle.system_id, reported))
         return bool(changed)
+
+    def feel(self, forces: Sequence[Vector], now: float) -> None:
+        """Let the autopilots take the specific forces (N) (body frames, m/s2) of the time since the last step."""
+        for autopilot, force in zip(self._autopilots, forces, strict=True):
+            autopilot.feel(force, now)
 
     def clipped(self, exceeded: Sequence[int]) -> None:
         """Count, with all who report it, whose accelerometer clipped: 0 the payload's, 1 .. N the vehicles'."""

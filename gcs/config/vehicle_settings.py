@@ -127,6 +127,8 @@ class FreeFlightSettings(SettingsTable):
     heading_from: float = 1.0  # m; horizontal distance from which a vehicle looks ahead to its goal
     landing_slow_below: float = 5.0  # m above home; below which it lands with MPC_LAND_SPEED, PX4's MPC_LAND_ALT2
     landing_slow_from: float = 10.0  # m above home; from which it slows down to that, PX4's MPC_LAND_ALT1
+    position_timeout: float = 0.2  # s; in which a position that repeats itself counts as lost, as the other sensors
+    position_motion: float = 0.05  # m; that a vehicle must have moved meanwhile
     touchdown_speed: float = 0.15  # m/s; vertical speed of a vehicle that the ground holds
     touchdown_thrust: Share = 0.85  # of the weight; thrust below which the ground carries the rest
     touchdown_time: float = 0.5  # s; for which both must last
@@ -172,6 +174,7 @@ class StreamIntervals(SettingsTable):
     estimator_status: float = 1.0  # s; ESTIMATOR_STATUS
     rc_channels: float = 1.0  # s; RC_CHANNELS
     position_target_local_ned: float = 1.0  # s; POSITION_TARGET_LOCAL_NED
+    position_target_global_int: float = 1.0  # s; POSITION_TARGET_GLOBAL_INT
     nav_controller_output: float = 1.0  # s; NAV_CONTROLLER_OUTPUT
     odometry: float = 1.0  # s; ODOMETRY
     servo_output_raw: float = 1.0  # s; SERVO_OUTPUT_RAW

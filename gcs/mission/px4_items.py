@@ -76,6 +76,8 @@ VERTICES = frozenset({5001, 5002})
 """Corners of inclusion and exclusion polygons: parameter 1 is their number."""
 CIRCLES = frozenset({5003, 5004})
 """Inclusion and exclusion circles: parameter 1 is the radius (m)."""
+RETURN_POINT = 5000
+"""Of a fence."""
 _FENCE = FENCE_AND_RALLY - {RALLY_POINT}
 
 
@@ -109,6 +111,8 @@ def check_fence_item(item: MissionItem) -> None:
     _check_frame(item, PLACED_FRAMES)
     if item.command not in _FENCE:
         raise ItemError("command", "no part of a fence")
+    if item.command == RETURN_POINT:
+        raise ItemError("command", "a fence's return point is not flown to; rally points are")
     check_numbers(item)
     _check_given_place(item)
     if item.command in VERTICES and whole(item, 0, "vertices") < 3:

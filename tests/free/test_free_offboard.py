@@ -14,6 +14,8 @@ from vehicle_sim.autopilot.setpoints import SetpointError
 LOCAL, BODY = mavlink.MAV_FRAME_LOCAL_NED, mavlink.MAV_FRAME_BODY_NED
 POSITION_ONLY, VELOCITY_ONLY, ACCELERATION_ONLY = 0b1101_1111_1000, 0b1101_1100_0111, 0b1100_0011_1111
 YAW, YAW_RATE = 1024, 2048
+GCS_HEARTBEAT = mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, 8, 0, 0, 4, 3)
+COMPANION_HEARTBEAT = mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_ONBOARD_CONTROLLER, 8, 0, 0, 4, 3)
 HOVER = 0.7 * 9.81 / 30.0
 
 
@@ -207,11 +209,35 @@ def test_silence_of_all_grounds_has_the_effect_of_its_parameter(action, expected
     with FreeBench() as bench:
         bench.set_parameter("NAV_DLL_ACT", action)
         bench.set_parameter("COM_DL_LOSS_T", 5)
+        bench.send(GCS_HEARTBEAT)
         bench.take_off(3.0)
         bench.vehicles[0].autopilot.go_to((6.0, 0.0, -3.0), NAN, NAN, bench.now)
-        bench.run(5.5)
+        bench.send(GCS_HEARTBEAT)
+        bench.run(4.5)
+        assert not bench.vehicles[0].autopilot.failsafe
+        bench.run(1.0)
         assert bench.mode_of() == expected
         assert bench.vehicles[0].autopilot.failsafe == (action > 0)
+
+
+def test_heartbeats_of_ground_stations_alone_are_a_data_link():
+    with FreeBench() as bench:
+        bench.set_parameter("NAV_DLL_ACT", 1)
+        bench.set_parameter("COM_DL_LOSS_T", 5)
+        bench.run(0.5)
+        bench.send(COMPANION_HEARTBEAT)
+        assert bench.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1) == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
+        assert "no HEARTBEAT of a ground station" in bench.texts()
+        bench.send(GCS_HEARTBEAT)
+        bench.take_off(3.0)
+        for _ in range(6):
+            bench.send(COMPANION_HEARTBEAT)
+            bench.run(1.0)
+        assert bench.vehicles[0].autopilot.failsafe
+        bench.send(GCS_HEARTBEAT)
+        assert bench.command(mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH) == mavlink.MAV_RESULT_ACCEPTED
+        bench.run(1.0)
+        assert bench.mode_of() == "AUTO.RTL" and not bench.vehicles[0].autopilot.failsafe
 
 
 def fields_of(message):
@@ -264,3 +290,31 @@ def test_another_ground_cannot_steer_a_vehicle_in_offboard():
         assert bench.vehicles[0].refused_setpoints == refused + 1
         bench.run(2.0)
         assert bench.position()[0] < 0.2
+
+
+def test_refusal_of_set_points_and_of_offboard_names_the_reason():
+    with FreeBench() as bench:
+        bench.run(0.5)
+        bench.streaming[1] = local(POSITION_ONLY, frame=mavlink.MAV_FRAME_LOCAL_ENU)
+        bench.run(1.0)
+        assert bench.texts().count("frame 4 is not supported") == 1  # of seventeen set-points
+        assert bench.command(*OFFBOARD) == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
+        assert "OFFBOARD denied: SET_POSITION_TARGET_LOCAL_NED refused" in bench.texts()
+        bench.streaming.clear()
+        bench.run(2.0)
+        assert bench.command(*OFFBOARD) == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
+        assert "no set-points from you" in bench.texts()
+
+
+def test_link_loss_in_offboard_holds_though_set_points_of_a_companion_come():
+    with FreeBench() as bench:
+        bench.set_parameter("NAV_DLL_ACT", 1)
+        bench.set_parameter("COM_DL_LOSS_T", 5)
+        bench.send(GCS_HEARTBEAT)
+        bench.take_off()
+        bench.send(GCS_HEARTBEAT)
+        offboard(bench, local(VELOCITY_ONLY, velocity=(1.0, 0.0, 0.0)))
+        bench.messages.clear()
+        bench.run(8.0)
+        assert bench.mode_of() == "AUTO.LOITER" and bench.vehicles[0].autopilot.failsafe
+        assert bench.texts().count("No ground station") == 1

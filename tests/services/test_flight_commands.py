@@ -11,6 +11,7 @@ from service_bench import COMPONENT, HOME_ALTITUDE, NAN, REFUSED, SYSTEM, Servic
 
 from gcs.mavlink import px4
 from gcs.mavlink.newer_messages import COMMAND_CANCEL, NEWER, RESULT_UNSUPPORTED_FRAME
+from gcs.mavlink.services.aircraft import Place, Turn
 
 ACCEPTED, DENIED = mavlink.MAV_RESULT_ACCEPTED, mavlink.MAV_RESULT_DENIED
 UNSUPPORTED = mavlink.MAV_RESULT_UNSUPPORTED
@@ -31,6 +32,10 @@ RELATIVE, RELATIVE_INT = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAM
         (command(20), ("enter_mode", px4.MODE_RETURN)),
         (command(21), ("enter_mode", px4.MODE_LAND)),
         (command(178, 1, 4.5, -1), ("change_speed", 4.5)),
+        (command(115, 90, 20, -1, 0), ("turn", Turn(math.pi / 2, math.radians(20.0), -1, False))),
+        (command(179, 1), ("set_home", None)),
+        (command(179, 0, 0, 0, 0, 47.5, 8.5, 500), ("set_home", Place(47.5, 8.5, 500.0))),
+        (command_int(179, RELATIVE, x=475000000, y=85000000, z=5.0), ("set_home", (47.5, 8.5, HOME_ALTITUDE + 5.0))),
         (command(300, 2, 9), ("start_mission", 2)),
         (command(300, NAN), ("start_mission", 0)),
         (command(193, 0), ("pause",)),
@@ -69,7 +74,7 @@ def test_reposition_leaves_open_what_is_not_given() -> None:
     assert bench.aircraft.calls[-1] == ("reposition", (47.25, 8.5, 500.0, 0.5, 2.5))
 
 
-@pytest.mark.parametrize("number", [22, 192])
+@pytest.mark.parametrize("number", [22, 179, 192])
 @pytest.mark.parametrize("frame", [mavlink.MAV_FRAME_LOCAL_NED, mavlink.MAV_FRAME_BODY_FRD, 99])
 def test_place_in_another_frame_is_refused_as_such(number: int, frame: int) -> None:
     bench = ServiceBench()
@@ -86,6 +91,10 @@ def test_place_in_another_frame_is_refused_as_such(number: int, frame: int) -> N
         (command(300, -1), 1), (command(300, 1.5), 1), (command(192, 0, 0, 0, 0, 91.0, 0.0, 0.0), 5),
         (command(192, 0, 0, 0, 0, 0.0, -181.0, 0.0), 6), (command(192, 0, 0, 0, 0, 0, 0, math.inf), 7),
         (command(262, 99), 1), (command(262, NAN), 1),
+        (command(115, NAN), 1), (command(115, 361), 1), (command(115, 0, -1), 2), (command(115, 0, 0, 2), 3),
+        (command(115, 0, 0, 0, 2), 4), (command(179, 2), 1), (command(179, 0, 0, 0, 0, NAN, 8, 500), 5),
+        (command(179, 0, 0, 0, 0, 47, 181, 500), 6), (command(179, 0, 0, 0, 0, 47, 8, NAN), 7),
+        (command(179, 0, 0, 0, 0, 47, 8, math.inf), 7),
     ],
 )  # fmt: skip
 def test_wrong_parameter_is_named_and_nothing_is_asked(message: Any, parameter: int) -> None:

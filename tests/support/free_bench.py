@@ -82,6 +82,13 @@ class FreeBench:
         [result] = [m.result for _, i, m in self.messages if m.get_type() == "COMMAND_ACK" and i == vehicle]
         return result
 
+    def requested(self, number: int) -> Any:
+        """Request a message of vehicle 1 once; return it, None if it is refused."""
+        if self.command(mavlink.MAV_CMD_REQUEST_MESSAGE, number) != mavlink.MAV_RESULT_ACCEPTED:
+            return None
+        [message] = [m for _, _, m in self.messages if m.get_msgId() == number]
+        return message
+
     def set_parameter(self, name: str, value: float, vehicle: int = 1) -> None:
         kind = self.vehicles[vehicle - 1].parameters.by_name(name).type
         wire = px4.parameter_to_wire(value, kind)
@@ -130,4 +137,6 @@ class FreeBench:
         assert self.run(20.0, lambda: all(self.mode_of(i + 1) == "AUTO.LOITER" for i in range(len(self.vehicles))))
 
     def texts(self) -> str:
-        return " ".join(m.text for _, _, m in self.messages if m.get_type() == "STATUSTEXT")
+        """Return all texts since the messages were cleared, the chunks of each joined."""
+        found = [m for _, _, m in self.messages if m.get_type() == "STATUSTEXT"]
+        return "".join((" " if m.chunk_seq == 0 else "") + m.text for m in found)

@@ -175,6 +175,8 @@ class Flight:
         self.current_item = 0
         self.mission_finished = False
         self.mission_active = False
+        self.fence: tuple[MissionItem, ...] = ()
+        self.rally_points: tuple[MissionItem, ...] = ()
         self.taken = 0
         """Missions that were handed over."""
 
@@ -187,6 +189,12 @@ class Flight:
     def set_current_item(self, index: int, now: float) -> Answer:
         self.current_item = index
         return ACCEPTED_COMMAND
+
+    def take_fence(self, items: Any) -> None:
+        self.fence = tuple(items)
+
+    def take_rally_points(self, items: Any) -> None:
+        self.rally_points = tuple(items)
 
 
 class MissionBench(Bench):

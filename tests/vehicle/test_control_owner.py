@@ -67,7 +67,22 @@ def test_offboard_takes_two_setpoints_in_time_the_last_of_them_fresh(owner, time
     if accepted:
         assert owner._autopilot.entered == [(5000 + len(times) - 1, times[-1], 10.5)]
     else:
-        assert answer.result == mavlink.MAV_RESULT_TEMPORARILY_REJECTED and "no set-points from you" in answer.text
+        words = "within 0.5 s of each other" if times and 10.5 - times[-1] < LOSS else "no set-points from you"
+        assert answer.result == mavlink.MAV_RESULT_TEMPORARILY_REJECTED and words in answer.text
+
+
+@pytest.mark.parametrize(("now", "named"), [(10.2, True), (10.0 + 1.01 * LOSS, False)])
+def test_refusal_of_offboard_names_why_the_set_points_were_refused(owner, now, named):
+    owner.refuse("SET_POSITION_TARGET_LOCAL_NED refused: a force cannot be flown", GROUND, 10.0)
+    for sender, expected in ((GROUND, named), (STRANGER, False)):
+        text = owner.enter_offboard(sender, now).text
+        assert ("a force cannot be flown" in text, "no set-points from you" in text) == (expected, not expected)
+
+
+def test_refusals_that_are_kept_are_bounded(owner):
+    for port in range(2 * SETTINGS.setpoint_streams_max):
+        owner.refuse("refused", (("10.0.1.1", port), 255), 10.0)
+    assert len(owner._refused) == SETTINGS.setpoint_streams_max
 
 
 def test_control_lasts_until_setpoints_stop_for_the_loss_time(owner):

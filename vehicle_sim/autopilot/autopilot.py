@@ -25,7 +25,7 @@ from vehicle_sim.autopilot.navigation import Navigation
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.autopilot.setpoint_stream import Setpoint, SetpointStream
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint, StopPlan
-from vehicle_sim.world.sensors import Measurement
+from vehicle_sim.world.sensors import ACCELEROMETER_RANGE, Measurement
 
 _ORIGIN: Vector = (0.0, 0.0, 0.0)
 
@@ -165,6 +165,12 @@ class Autopilot:
         """Take a sample that is not fresh."""
         estimate = self.state.navigation.update(sample, self.state.actuation.commanded_acceleration, now)
         self.arrays.estimates[0] = math.nan if estimate is None else estimate.as_row()
+
+    def feel(self, force: Vector, now: float) -> None:
+        """Take the specific force (body frame, m/s2) of the time since the last step, up to ``now`` (s)."""
+        size = math.hypot(*force)
+        share = min(ACCELEROMETER_RANGE / size, 1.0) if size > 0.0 else 1.0
+        self.state.specific_force = force[0] * share, force[1] * share, force[2] * share
 
     def decide(self, now: float) -> bool:
         """Check the failsafes, and say what the rotors are to do; return True if a HEARTBEAT changes."""

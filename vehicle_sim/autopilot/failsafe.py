@@ -8,7 +8,7 @@ from typing import Generic, TypeVar
 from gcs.mavlink import px4
 from vehicle_sim.autopilot.flight_state import FlightState
 
-S = TypeVar("S", bound=FlightState)
+S = TypeVar("S", bound=FlightState, contravariant=True)
 
 
 @dataclass(frozen=True)
@@ -96,15 +96,7 @@ def _land(state: FlightState, now: float) -> None:
     state.failsafe = True
 
 
-FAILSAFES: tuple[Failsafe[FlightState], ...] = (
-    Failsafe(
-        "offboard_loss",
-        px4.PARAM_SETPOINT_LOSS,
-        setpoints_lost,
-        _in_flight,
-        _hold_then_land,
-        "Set-points lost: braking and holding",
-    ),
+OFFBOARD_LOSS_ON_GROUND: tuple[Failsafe[FlightState], ...] = (
     Failsafe(
         "offboard_loss_on_ground",
         px4.PARAM_SETPOINT_LOSS,
@@ -114,6 +106,19 @@ FAILSAFES: tuple[Failsafe[FlightState], ...] = (
         "Set-points lost on the ground: disarmed",
     ),
     Failsafe("offboard_loss_disarmed", px4.PARAM_SETPOINT_LOSS, setpoints_lost, always, disarm, ""),
+)
+"""Of any vehicle; to follow that of one in the air."""
+
+FAILSAFES: tuple[Failsafe[FlightState], ...] = (
+    Failsafe(
+        "offboard_loss",
+        px4.PARAM_SETPOINT_LOSS,
+        setpoints_lost,
+        _in_flight,
+        _hold_then_land,
+        "Set-points lost: braking and holding",
+    ),
+    *OFFBOARD_LOSS_ON_GROUND,
     Failsafe(
         "data_link_loss",
         px4.PARAM_LINK_LOSS,

@@ -2,11 +2,12 @@
 
 import math
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 from gcs.config.vehicle_settings import AutopilotSettings
 from gcs.mavlink import px4
 from gcs.mavlink.services.parameter_table import ParameterTable
-from idc_controller.rotations_float import euler_of
+from idc_controller.rotations_float import Vector, euler_of
 from vehicle_sim.autopilot.actuation import Actuation
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.hold_control import HoldController, HoldPlan
@@ -17,6 +18,17 @@ from vehicle_sim.autopilot.setpoints import StopPlan
 from vehicle_sim.world.sensors import Measurement
 
 TIME_TOLERANCE = 1e-6  # s: sums of steps are not exact
+
+
+class PositionTarget(NamedTuple):
+    """What the position control follows (NED, m, m/s, m/s2, rad, rad/s; NaN: not controlled), and where that ends."""
+
+    position: Vector
+    velocity: Vector
+    acceleration: Vector
+    yaw: float
+    yaw_rate: float
+    destination: Vector
 
 
 @dataclass(eq=False)
@@ -43,7 +55,9 @@ class FlightState:
     stop_plan: StopPlan | None = None
     """The newest of the ground in control."""
     link_time: float = -math.inf
-    """Time of the last message of any ground (s)."""
+    """Time of the last message of any ground (s), of a free vehicle of the last HEARTBEAT of one."""
+    specific_force: Vector | None = None
+    """Measured last, in the body frame (m/s2), within the accelerometer's range; None: it is not measured."""
     notices: list[str] = field(default_factory=list)
     """STATUSTEXTs to the operator, not sent yet."""
 
@@ -53,6 +67,10 @@ class FlightState:
         if not self.failsafe:
             return self.mode
         return px4.MODE_LAND if self.is_descending else px4.MODE_HOLD
+
+    def has_position(self, now: float) -> bool:
+        """Return True if usable samples come, and the position is measured."""
+        return self.navigation.is_valid(now)
 
     @property
     def now(self) -> float:
@@ -72,6 +90,13 @@ class FlightState:
     def is_descending(self) -> bool:
         """Return True if it follows a plan to the ground."""
         return self.hold is not None and self.hold.plan.is_descending(self.now)
+
+    def position_target(self, now: float) -> PositionTarget | None:
+        """Return the planned state of a stop, hold or descent, and where it comes to hold; None: there is none."""
+        if self.hold is None:
+            return None
+        plan = self.hold.plan
+        return PositionTarget(*plan.at(now), plan.yaw, math.nan, plan.control_points[-1])
 
     @property
     def is_up(self) -> bool:

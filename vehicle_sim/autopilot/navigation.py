@@ -24,6 +24,7 @@ class Navigation:
         """``motor_lag`` (s): time constant with which torques follow their commands; ``arrays`` of one vehicle."""
         self._motor_lag = motor_lag
         self._settings = settings
+        self.arrays = arrays
         self._row, self._stamps = arrays.estimates[0], arrays.stamps[0]
         self._usable_at = self._updated_at = -math.inf
         self._known: Measurement | None = None

@@ -1,36 +1,24 @@
-"""A vehicle as the MAVLink services command it: what one that carries a payload with others does, and refuses."""
+"""A vehicle as the MAVLink services command it; what one that carries a payload with others refuses."""
 
-from collections.abc import Mapping
-
-import pymavlink.dialects.v20.ardupilotmega as mavlink
+from collections.abc import Sequence
 
 from gcs.mavlink import px4
-from gcs.mavlink.messages import Message
-from gcs.mavlink.services.aircraft import Reposition, Sender
-from gcs.mavlink.services.answer import Answer
+from gcs.mavlink.services.aircraft import Place, Reposition, Sender, Turn
+from gcs.mavlink.services.answer import Answer, denied
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.modes import team_only
 from vehicle_sim.mavlink.control_owner import ControlOwner
 
-_ATTITUDE_ONLY = "Position set-points are ignored on a payload: only SET_ATTITUDE_TARGET is flown"
-TEAM_SETPOINTS: Mapping[type[Message], str] = {
-    mavlink.MAVLink_set_position_target_local_ned_message: _ATTITUDE_ONLY,
-    mavlink.MAVLink_set_position_target_global_int_message: _ATTITUDE_ONLY,
-}
-"""Set-points that one vehicle of a team does not fly, and what is said of them."""
 
+class SimulatedAircraft:
+    """What any simulated vehicle does when it is commanded; which modes it has is its kind's."""
 
-class CoupledAircraft:
-    """A vehicle on a payload: flown in OFFBOARD by the ground in control; what would tear the team apart is denied."""
+    modes: Sequence[int]
+    obeys_broadcasts: bool
 
     def __init__(self, autopilot: Autopilot, owner: ControlOwner) -> None:
         self._autopilot = autopilot
         self._owner = owner
-
-    modes = (px4.MODE_HOLD, px4.MODE_LAND, px4.MODE_OFFBOARD, px4.MODE_POSCTL, px4.MODE_ALTCTL, px4.MODE_MANUAL)
-    """Those of sticks on the ground only."""
-    obeys_broadcasts = False
-    """One that missed the command would be left behind by the others."""
 
     def arming_problem(self, now: float) -> str | None:
         """See :meth:`.Autopilot.arming_problem`."""
@@ -50,6 +38,15 @@ class CoupledAircraft:
             return self._owner.enter_offboard(sender, now)
         return self._autopilot.enter_mode(custom_mode, now)
 
+
+class CoupledAircraft(SimulatedAircraft):
+    """A vehicle on a payload: flown in OFFBOARD by the ground in control; what would tear the team apart is denied."""
+
+    modes = (px4.MODE_HOLD, px4.MODE_LAND, px4.MODE_OFFBOARD, px4.MODE_POSCTL, px4.MODE_ALTCTL, px4.MODE_MANUAL)
+    """Those of sticks on the ground only."""
+    obeys_broadcasts = False
+    """One that missed the command would be left behind by the others."""
+
     def take_off(self, altitude: float, now: float) -> Answer:
         """Refuse."""
         return team_only("Takeoff")
@@ -61,6 +58,14 @@ class CoupledAircraft:
     def change_speed(self, speed: float, now: float) -> Answer:
         """Refuse."""
         return team_only("Speed change")
+
+    def turn(self, turn: Turn, now: float) -> Answer:
+        """Refuse."""
+        return team_only("Turn")
+
+    def set_home(self, place: Place | None, now: float) -> Answer:
+        """Refuse: home is the origin of the local frame."""
+        return denied("Home denied: it is the origin of the simulated world; vehicle-sim --mission sets it")
 
     def start_mission(self, first: int, now: float) -> Answer:
         """Refuse."""

@@ -1,5 +1,6 @@
 """Control of a vehicle: the ground whose set-points fly it commands it, and while they come no other."""
 
+import math
 from collections import Counter
 
 from gcs.config.vehicle_settings import VehicleLinkSettings
@@ -31,6 +32,8 @@ class ControlOwner:
         self._settings = settings
         self._autopilot = autopilot
         self._streams: dict[Sender, _Stream] = {}
+        self._refused: dict[Sender, tuple[str, float]] = {}
+        """Why a sender's last set-point was refused, and when (s)."""
         self._owner: Sender | None = None
 
     def in_control(self, now: float) -> Sender | None:
@@ -69,15 +72,26 @@ class ControlOwner:
         if sender == self._owner and self._autopilot.wants_setpoints:
             self._autopilot.follow(setpoint, now)
 
+    def refuse(self, why: str, sender: Sender, now: float) -> None:
+        """Keep why a set-point of a sender cannot be flown: it may request OFFBOARD on it."""
+        self._refused.pop(sender, None)
+        if len(self._refused) >= self._settings.setpoint_streams_max:
+            del self._refused[next(iter(self._refused))]
+        self._refused[sender] = why, now
+
     def enter_offboard(self, sender: Sender, now: float) -> Answer:
         """Enter OFFBOARD on the sender's own set-points, of which two must have come in time."""
         stream = self._streams.get(sender)
-        if (
-            stream is None
-            or not self._is_fresh(stream.time, now)
-            or not self._is_fresh(stream.previous_time, stream.time)
-        ):
-            return rejected_for_now("OFFBOARD denied: no set-points from you")
+        if stream is None or not self._is_fresh(stream.time, now):
+            why, refused_at = self._refused.get(sender, ("", -math.inf))
+            if not self._is_fresh(refused_at, now):
+                why = "no set-points from you"
+            return rejected_for_now(f"OFFBOARD denied: {why}")
+        if not self._is_fresh(stream.previous_time, stream.time):
+            limit = self._autopilot.state.setpoint_loss_time
+            return rejected_for_now(
+                f"OFFBOARD denied: set-points from you are to come within {limit:g} s of each other"
+            )
         answer = self._autopilot.enter_offboard(stream.last, stream.time, now)
         self._owner = sender
         return answer

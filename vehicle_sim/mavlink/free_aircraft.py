@@ -4,22 +4,25 @@ import math
 from collections.abc import Callable, Sequence
 
 from gcs.mavlink import px4
-from gcs.mavlink.services.aircraft import Reposition, Sender
+from gcs.mavlink.services.aircraft import Place, Reposition, Turn
 from gcs.mavlink.services.answer import ACCEPTED, Answer, denied, rejected_for_now
 from gcs.mavlink.services.mission_item import MissionItem
 from vehicle_sim.autopilot.free.autopilot import FreeAutopilot
 from vehicle_sim.autopilot.free.mission import Mission
+from vehicle_sim.mavlink.aircraft import SimulatedAircraft
 from vehicle_sim.mavlink.control_owner import ControlOwner
+from vehicle_sim.mavlink.fence_areas import fence_of, rally_points_of
 from vehicle_sim.mavlink.geodesy import LocalFrame
 from vehicle_sim.mavlink.mission_steps import steps_of
 
 
-class FreeAircraft:
+class FreeAircraft(SimulatedAircraft):
     """Does what PX4 does; places and altitudes become those of the local frame here."""
 
+    _autopilot: FreeAutopilot
+
     def __init__(self, autopilot: FreeAutopilot, owner: ControlOwner, frame: LocalFrame) -> None:
-        self._autopilot = autopilot
-        self._owner = owner
+        super().__init__(autopilot, owner)
         self._frame = frame
         self._items: tuple[MissionItem, ...] = ()
 
@@ -29,27 +32,9 @@ class FreeAircraft:
     )  # fmt: skip
     obeys_broadcasts = True
 
-    def arming_problem(self, now: float) -> str | None:
-        """See :meth:`.Autopilot.arming_problem`."""
-        return self._autopilot.arming_problem(now)
-
-    def arm(self, now: float, force: bool = False) -> Answer:
-        """See :meth:`.FreeAutopilot.arm`."""
-        return self._autopilot.arm(now, force)
-
-    def disarm(self, now: float, force: bool = False) -> Answer:
-        """See :meth:`.Autopilot.disarm`."""
-        return self._autopilot.disarm(force)
-
-    def enter_mode(self, custom_mode: int, sender: Sender, now: float) -> Answer:
-        """Enter a mode; OFFBOARD on the set-points of ``sender``."""
-        if custom_mode == px4.MODE_OFFBOARD:
-            return self._owner.enter_offboard(sender, now)
-        return self._autopilot.enter_mode(custom_mode, now)
-
     def take_off(self, altitude: float, now: float) -> Answer:
         """Take off to ``altitude`` (m above mean sea level; NaN: the parameter's height above home)."""
-        return self._autopilot.take_off(altitude - self._frame.altitude + self._autopilot.home[2], now)
+        return self._autopilot.take_off(altitude - self._frame.altitude + self._autopilot.state.ground, now)
 
     def reposition(self, goal: Reposition, now: float) -> Answer:
         """Fly to a place and hold there."""
@@ -57,7 +42,7 @@ class FreeAircraft:
         if math.isfinite(goal.latitude) and math.isfinite(goal.longitude):
             altitude = goal.altitude
             if math.isnan(altitude):
-                estimate = self._autopilot.state.navigation.estimate
+                estimate = self._autopilot.state.estimate
                 altitude = self._frame.altitude - (0.0 if estimate is None else estimate.position[2])
             north, east, down = self._frame.local(goal.latitude, goal.longitude, altitude)
         else:
@@ -67,6 +52,17 @@ class FreeAircraft:
     def change_speed(self, speed: float, now: float) -> Answer:
         """Fly with another horizontal speed (m/s) from now on."""
         return self._autopilot.change_speed(speed, now)
+
+    def turn(self, turn: Turn, now: float) -> Answer:
+        """Change the heading where it holds."""
+        return self._autopilot.turn(turn.angle, turn.rate, turn.direction, turn.is_relative)
+
+    def set_home(self, place: Place | None, now: float) -> Answer:
+        """Return to a ``place`` from now on (None: to where it is), and have the mission's altitudes above it."""
+        answer = self._autopilot.set_home(None if place is None else self._frame.local(*place))
+        if answer == ACCEPTED:
+            self._autopilot.replace_steps(steps_of(self._items, self._frame, self._autopilot.home))
+        return answer
 
     def start_mission(self, first: int, now: float) -> Answer:
         """Fly the mission from item ``first`` on; as PX4 it arms for it."""
@@ -119,3 +115,11 @@ class FreeAircraft:
             return denied(f"Mission denied: there is no item {index}")
         self._autopilot.set_current_item(index)
         return ACCEPTED
+
+    def take_fence(self, items: Sequence[MissionItem]) -> None:
+        """Have another fence from now on."""
+        self._autopilot.state.fence = fence_of(items, self._frame)
+
+    def take_rally_points(self, items: Sequence[MissionItem]) -> None:
+        """Have other rally points from now on."""
+        self._autopilot.state.rally_points = rally_points_of(items, self._frame, self._autopilot.home)

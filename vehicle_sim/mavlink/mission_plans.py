@@ -96,6 +96,12 @@ class MissionFlight(Protocol):
     def set_current_item(self, index: int, now: float) -> Answer:
         """Go on with item ``index``."""
 
+    def take_fence(self, items: Sequence[MissionItem]) -> None:
+        """Have another fence."""
+
+    def take_rally_points(self, items: Sequence[MissionItem]) -> None:
+        """Have other rally points."""
+
     @property
     def current_item(self) -> int:
         """The item of the mission that is flown, or will be."""
@@ -201,6 +207,10 @@ class MissionPlans:
             if answer.result != mavlink.MAV_RESULT_ACCEPTED:
                 return MissionAnswer(mavlink.MAV_MISSION_ERROR, answer.text)
             self.problem = problem
+        elif plan_type == PlanType.FENCE:
+            self._flight.take_fence(items)
+        else:
+            self._flight.take_rally_points(items)
         self._plans[plan_type], self._ids[plan_type] = items, identity
         self._changes += 1
         return MissionAnswer(TAKEN.result, f"Mission cannot be started: {problem}" if problem else "")

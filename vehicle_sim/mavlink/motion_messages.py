@@ -25,6 +25,9 @@ _ALTITUDE = LAYOUTS[mavlink.MAVLINK_MSG_ID_ALTITUDE]
 _SCALED_PRESSURE = LAYOUTS[mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE]
 
 _GYROS: int = mavlink.HIGHRES_IMU_UPDATED_XGYRO | mavlink.HIGHRES_IMU_UPDATED_YGYRO | mavlink.HIGHRES_IMU_UPDATED_ZGYRO
+_ACCELEROMETERS: int = (
+    mavlink.HIGHRES_IMU_UPDATED_XACC | mavlink.HIGHRES_IMU_UPDATED_YACC | mavlink.HIGHRES_IMU_UPDATED_ZACC
+)
 _BAROMETER: int = (
     mavlink.HIGHRES_IMU_UPDATED_ABS_PRESSURE
     | mavlink.HIGHRES_IMU_UPDATED_PRESSURE_ALT
@@ -103,7 +106,7 @@ def global_position(report: Report, now: float) -> Built:
     latitude, longitude, altitude = report.frame.place_of(measured)
     v_x, v_y, v_z = (clamp(100.0 * v, 16) for v in measured.velocity)
     heading = round(math.degrees(euler_of(measured.attitude)[2]) * 100.0) % 36000
-    height = clamp(-1e3 * measured.position[2], 32)
+    height = clamp(1e3 * (report.autopilot.home[2] - measured.position[2]), 32)
     stamp = report.time_boot_ms(measured.time)
     return (_GLOBAL_POSITION_INT.pack(stamp, latitude, longitude, altitude, height, v_x, v_y, v_z, heading),)
 
@@ -153,26 +156,29 @@ def odometry(report: Report, now: float) -> Built:
 
 
 def altitude(report: Report, now: float) -> Built:
-    """Altitude above mean sea level and height above home, which is on the flat ground."""
+    """Altitude above mean sea level, height in the local frame, above home and above the flat ground."""
     measured = report.own_state
     if measured is None:
         return ()
     above_sea, height = _altitude_of(report, measured), -measured.position[2]
+    above_home = report.autopilot.home[2] + height
     stamp = report.time_boot_us(measured.time)
-    return (_ALTITUDE.pack(stamp, above_sea, above_sea, height, height, report.home.altitude, height),)
+    return (_ALTITUDE.pack(stamp, above_sea, above_sea, height, above_home, report.home.altitude, height),)
 
 
 def highres_imu(report: Report, now: float) -> Built:
-    """Body rates, and pressure by the standard atmosphere; nothing else is measured (NaN)."""
+    """Body rates, specific force of a free vehicle, and pressure by the standard atmosphere; the rest is NaN."""
     measured = report.own_state
     if measured is None:
         return ()
     above_sea = _altitude_of(report, measured)
     pressure, temperature = _air_at(above_sea)
+    force = report.autopilot.state.specific_force
+    updated = _GYROS | _BAROMETER | (0 if force is None else _ACCELEROMETERS)
     return packed(
         mavlink.MAVLink_highres_imu_message(
-            report.time_boot_us(measured.time), _NAN, _NAN, _NAN, *measured.rates, _NAN, _NAN, _NAN,
-            pressure, _NAN, above_sea, temperature - _ZERO_CELSIUS, _GYROS | _BAROMETER,
+            report.time_boot_us(measured.time), *(force or (_NAN, _NAN, _NAN)), *measured.rates, _NAN, _NAN, _NAN,
+            pressure, _NAN, above_sea, temperature - _ZERO_CELSIUS, updated,
         )
     )  # fmt: skip
 
@@ -188,8 +194,11 @@ def scaled_pressure(report: Report, now: float) -> Built:
 
 
 def estimator_status(report: Report, now: float) -> Built:
-    """What the estimate holds: everything while samples come, otherwise nothing; no test ratios."""
-    flags = _ESTIMATED if report.autopilot.state.navigation.is_valid(now) else 0
+    """What the estimate holds: all while samples come, attitude alone without a position; no test ratios."""
+    state = report.autopilot.state
+    flags = _ESTIMATED if state.has_position(now) else 0
+    if state.navigation.is_valid(now):
+        flags |= mavlink.ESTIMATOR_ATTITUDE
     return packed(mavlink.MAVLink_estimator_status_message(report.time_boot_us(now), flags, *[_NAN] * 8))
 
 

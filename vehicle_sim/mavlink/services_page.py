@@ -12,6 +12,7 @@ from gcs.mavlink import px4
 from gcs.mavlink.layout import LAYOUTS
 from gcs.mavlink.services.parameter_table import REAL, Parameter
 from vehicle_sim.autopilot.airframe import Airframe
+from vehicle_sim.autopilot.free.parameters import free_parameters
 from vehicle_sim.mavlink.streams import CLIENT_STREAMS, default_intervals
 from vehicle_sim.mavlink.vehicle import Vehicle
 
@@ -36,6 +37,11 @@ def services_page() -> str:
         for mode in vehicle.aircraft.modes
     )
     parameters = "\n".join(_row(parameter) for parameter in vehicle.parameters)
+    airframe = Airframe.of_config(config.uav)
+    free = Vehicle(1, airframe, link=config.vehicle_link, free=True)
+    free_modes = ", ".join(f"`{px4.mode_name(mode)}`" for mode in free.aircraft.modes)
+    own = {parameter.name for parameter in free_parameters(airframe)}
+    of_free = "\n".join(_row(parameter) for parameter in free.parameters if parameter.name in own)
     return f"""# MAVLink services of a vehicle
 
 This page is made from the code: `make docs`. It is of a vehicle that carries a payload with others, with the default
@@ -89,6 +95,18 @@ MAV_CMD_PREFLIGHT_STORAGE saves, restores and resets them; what is saved is kept
 | parameter | type | default | range | what |
 |---|---|---|---|---|
 {parameters}
+
+## Vehicles without a payload
+
+With `vehicle-sim --free` messages and commands are the same; take-off, go-to, heading, speed, home, missions and return
+are carried out, and a command to all systems is obeyed ([what is flown](clients.md#vehicles-without-a-payload)). Modes:
+{free_modes}.
+
+These parameters are added, or have other defaults:
+
+| parameter | type | default | range | what |
+|---|---|---|---|---|
+{of_free}
 """
 
 

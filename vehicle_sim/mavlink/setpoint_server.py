@@ -6,6 +6,7 @@ from typing import Any
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.services.dispatcher import Dispatcher, Request
+from gcs.mavlink.services.unserved_inputs import Reminders
 from idc_controller.rotations_float import euler_of
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.position_setpoints import read_global, read_local
@@ -16,9 +17,12 @@ from vehicle_sim.mavlink.geodesy import LocalFrame
 
 STAMP_WRAP = 2**32 * 1e-3  # s after which stamps of 32 bits begin anew
 
+_LOCAL = mavlink.MAVLink_set_position_target_local_ned_message
+_GLOBAL = mavlink.MAVLink_set_position_target_global_int_message
+
 
 class SetpointServer:
-    """SET_ATTITUDE_TARGET and TRAJECTORY_REPRESENTATION_BEZIER.
+    """SET_ATTITUDE_TARGET and TRAJECTORY_REPRESENTATION_BEZIER of any vehicle.
 
     ``refused`` counts those that cannot be flown or came from a ground that is not in control.
     """
@@ -28,6 +32,7 @@ class SetpointServer:
         self._autopilot = autopilot
         self._owner = owner
         self._clock = clock
+        self._reminders = Reminders()
         self.refused = 0
 
     def register(self, dispatcher: Dispatcher) -> None:
@@ -36,20 +41,27 @@ class SetpointServer:
         dispatcher.register_fields(mavlink.MAVLink_trajectory_representation_bezier_message, self._on_stop_plan)
 
     def _on_setpoint(self, fields: tuple[Any, ...], request: Request) -> None:
-        self._take(lambda: read_setpoint(fields, self._autopilot.state.settings.setpoints), request)
+        limits = self._autopilot.state.settings.setpoints
+        self._take(lambda: read_setpoint(fields, limits), "SET_ATTITUDE_TARGET", request)
 
-    def _take(self, read: Callable[[], Setpoint], request: Request) -> None:
-        """Pass a set-point on to who is in control, if it can be flown."""
+    def _take(self, read: Callable[[], Setpoint], kind: str, request: Request) -> None:
+        """Pass a set-point on to who is in control, if it can be flown; ``kind``: the message's name."""
         sender, now = request.sender, request.now
         if self._owner.is_stranger(sender, now):
             self.refused += 1
             return
         try:
             setpoint = read()
-        except SetpointError:
-            self.refused += 1
+        except SetpointError as error:
+            self._refuse(kind, str(error), request)
             return
         self._owner.take(setpoint, sender, now)
+
+    def _refuse(self, kind: str, why: str, request: Request) -> None:
+        text = f"{kind} refused: {why}"
+        self.refused += 1
+        self._owner.refuse(text, request.sender, request.now)
+        self._reminders.send(text, kind, request)
 
     def _on_stop_plan(self, fields: tuple[Any, ...], request: Request) -> None:
         now = request.now
@@ -66,6 +78,20 @@ class SetpointServer:
         self._autopilot.take_stop_plan(StopPlan(start, *plan[1:]))
 
 
+class AttitudeSetpointServer(SetpointServer):
+    """Set-points of a vehicle on a payload, which flies no others: what it refuses of them, it says."""
+
+    def register(self, dispatcher: Dispatcher) -> None:
+        """Take the messages of this service."""
+        super().register(dispatcher)
+        for kind in (_LOCAL, _GLOBAL):
+            dispatcher.register(kind, self._on_position)
+
+    def _on_position(self, message: Any, request: Request) -> None:
+        why = "position set-points are not flown on a payload, only SET_ATTITUDE_TARGET is"
+        self._refuse(message.get_type(), why, request)
+
+
 class PositionSetpointServer(SetpointServer):
     """Takes set-points of position, velocity and acceleration, too: SET_POSITION_TARGET_LOCAL_NED and _GLOBAL_INT."""
 
@@ -78,14 +104,14 @@ class PositionSetpointServer(SetpointServer):
     def register(self, dispatcher: Dispatcher) -> None:
         """Take the messages of this service; a stop plan is for a vehicle of a team."""
         dispatcher.register_fields(mavlink.MAVLink_set_attitude_target_message, self._on_setpoint)
-        dispatcher.register_fields(mavlink.MAVLink_set_position_target_local_ned_message, self._on_local)
-        dispatcher.register_fields(mavlink.MAVLink_set_position_target_global_int_message, self._on_global)
+        dispatcher.register_fields(_LOCAL, self._on_local)
+        dispatcher.register_fields(_GLOBAL, self._on_global)
 
     def _on_local(self, fields: tuple[Any, ...], request: Request) -> None:
         estimate = self._autopilot.state.navigation.estimate
         heading = 0.0 if estimate is None else euler_of(estimate.attitude)[2]
-        self._take(lambda: read_local(fields, heading), request)
+        self._take(lambda: read_local(fields, heading), _LOCAL.msgname, request)
 
     def _on_global(self, fields: tuple[Any, ...], request: Request) -> None:
         home_altitude = self._frame.altitude - self._autopilot.home[2]
-        self._take(lambda: read_global(fields, self._frame.local, home_altitude), request)
+        self._take(lambda: read_global(fields, self._frame.local, home_altitude), _GLOBAL.msgname, request)

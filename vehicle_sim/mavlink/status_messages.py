@@ -82,6 +82,8 @@ def sys_status(report: Report, now: float) -> Built:
             health |= _RANGE_SENSOR
     if report.autopilot.state.navigation.is_valid(now):
         health |= _SENSORS
+        if not report.autopilot.state.has_position(now):
+            health &= ~mavlink.MAV_SYS_STATUS_SENSOR_GPS
     if report.autopilot.arming_problem(now) is None:
         health |= _PREARM
     return packed(mavlink.MAVLink_sys_status_message(present, present, health, 100, 16000, -1, 100, 0, 0, 0, 0, 0, 0))

@@ -23,6 +23,7 @@ OFFSETS: dict[MessageKey, float] = {
             (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_ESTIMATOR_STATUS),
             (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_RC_CHANNELS),
             (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED),
+            (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT),
             (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT),
         ],
         0.04,

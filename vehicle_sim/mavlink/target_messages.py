@@ -1,19 +1,21 @@
 """Messages of what a vehicle is to do: its targets, and the outputs to its rotors."""
 
 import math
+from collections.abc import Sequence
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.layout import LAYOUTS, packed
 from gcs.mavlink.services.aircraft import Built
-from idc_controller.rotations_float import euler_of
+from idc_controller.rotations_float import Vector, euler_of
 from vehicle_sim.autopilot.actuation import LEVEL
-from vehicle_sim.autopilot.hold_control import HoldPlan
+from vehicle_sim.autopilot.flight_state import PositionTarget
 from vehicle_sim.mavlink.geodesy import clamp
 from vehicle_sim.mavlink.report import Report
 
 _ATTITUDE_TARGET = LAYOUTS[mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET]
 _POSITION_TARGET = LAYOUTS[mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED]
+_GLOBAL_TARGET = LAYOUTS[mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT]
 
 _ROTORS = 4
 _PULSE_MIN, _PULSE_RANGE = 1000.0, 1000.0  # us
@@ -30,34 +32,48 @@ def attitude_target(report: Report, now: float) -> Built:
 
 
 def position_target(report: Report, now: float) -> Built:
-    """The planned state of a stop, hold or descent; there is none while an attitude is flown."""
-    plan = _plan(report)
-    if plan is None:
+    """What the position control follows; there is nothing while an attitude is flown."""
+    target = report.autopilot.state.position_target(now)
+    if target is None:
         return ()
-    position, velocity, acceleration = plan.at(now)
-    mask = mavlink.POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE
     return (
         _POSITION_TARGET.pack(
-            report.time_boot_ms(now), *position, *velocity, *acceleration, plan.yaw, 0.0,
-            mask, mavlink.MAV_FRAME_LOCAL_NED,
+            report.time_boot_ms(now), *_known(target.position), *_motion_of(target), _mask(target, target.position),
+            mavlink.MAV_FRAME_LOCAL_NED,
+        ),
+    )  # fmt: skip
+
+
+def global_position_target(report: Report, now: float) -> Built:
+    """The place where what is flown ends, as by PX4; there is none while an attitude or a velocity is flown."""
+    target = report.autopilot.state.position_target(now)
+    if target is None or not math.isfinite(sum(target.destination)):
+        return ()
+    latitude, longitude, altitude = report.frame.place(target.destination)
+    return (
+        _GLOBAL_TARGET.pack(
+            report.time_boot_ms(now), latitude, longitude, altitude * 1e-3, *_motion_of(target),
+            _mask(target, target.destination), mavlink.MAV_FRAME_GLOBAL_INT,
         ),
     )  # fmt: skip
 
 
 def nav_controller_output(report: Report, now: float) -> Built:
-    """The attitude that is flown, and distance and bearing of the place where it comes to hold."""
+    """The attitude that is flown, distance and bearing of the place where that ends, and the error of the altitude."""
     measured = report.own_state
     if measured is None:
         return ()
     target = report.autopilot.state.actuation.target.attitude
     roll, pitch, yaw = (math.degrees(angle) for angle in euler_of(measured.attitude if target is None else target))
     bearing, distance, above = yaw, 0.0, 0.0
-    if (plan := _plan(report)) is not None:
-        x, y, _ = plan.control_points[-1]
+    if (planned := report.autopilot.state.position_target(now)) is not None:
+        x, y, _ = planned.destination
         north, east = x - measured.position[0], y - measured.position[1]
-        distance = min(math.hypot(north, east), 65535.0)
-        bearing = math.degrees(math.atan2(east, north))
-        above = measured.position[2] - plan.at(now).position[2]
+        if math.isfinite(north + east):
+            distance = min(math.hypot(north, east), 65535.0)
+            bearing = math.degrees(math.atan2(east, north))
+        if math.isfinite(planned.position[2]):
+            above = measured.position[2] - planned.position[2]
     return packed(
         mavlink.MAVLink_nav_controller_output_message(
             roll, pitch, clamp(yaw, 16), clamp(bearing, 16), int(distance), above, 0.0, 0.0
@@ -78,9 +94,25 @@ def actuator_output_status(report: Report, now: float) -> Built:
     return packed(mavlink.MAVLink_actuator_output_status_message(report.time_boot_us(now), active, outputs))
 
 
-def _plan(report: Report) -> HoldPlan | None:
-    hold = report.autopilot.state.hold
-    return None if hold is None else hold.plan
+def _motion_of(target: PositionTarget) -> tuple[float, ...]:
+    """Return velocity, acceleration, yaw and yaw rate, 0 where they are not controlled."""
+    return _known((*target.velocity, *target.acceleration, target.yaw, target.yaw_rate))
+
+
+def _known(values: Sequence[float]) -> tuple[float, ...]:
+    return tuple(0.0 if math.isnan(value) else value for value in values)
+
+
+def _mask(target: PositionTarget, position: Vector) -> int:
+    """Return the POSITION_TARGET_TYPEMASK of what is not controlled, of a place ``position`` (NED, m)."""
+    ignored = sum(
+        1 << bit for bit, value in enumerate((*position, *target.velocity, *target.acceleration)) if math.isnan(value)
+    )
+    if math.isnan(target.yaw):
+        ignored |= mavlink.POSITION_TARGET_TYPEMASK_YAW_IGNORE
+    if math.isnan(target.yaw_rate):
+        ignored |= mavlink.POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE
+    return ignored
 
 
 def _speed_shares(report: Report) -> list[float]:
@@ -93,6 +125,7 @@ def _speed_shares(report: Report) -> list[float]:
 MESSAGES = {
     mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET: attitude_target,
     mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED: position_target,
+    mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT: global_position_target,
     mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: nav_controller_output,
     mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW: servo_output_raw,
     mavlink.MAVLINK_MSG_ID_ACTUATOR_OUTPUT_STATUS: actuator_output_status,

@@ -29,12 +29,12 @@ from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.free.autopilot import FreeAutopilot
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.autopilot.vehicle_parameters import vehicle_parameters
-from vehicle_sim.mavlink.aircraft import TEAM_SETPOINTS, CoupledAircraft
+from vehicle_sim.mavlink.aircraft import CoupledAircraft
 from vehicle_sim.mavlink.control_owner import ControlOwner
 from vehicle_sim.mavlink.free_aircraft import FreeAircraft
 from vehicle_sim.mavlink.geodesy import LocalFrame
 from vehicle_sim.mavlink.mission_plans import CoupledPlans, MissionPlans
-from vehicle_sim.mavlink.setpoint_server import PositionSetpointServer, SetpointServer
+from vehicle_sim.mavlink.setpoint_server import AttitudeSetpointServer, PositionSetpointServer, SetpointServer
 from vehicle_sim.mavlink.streams import CLIENT_STREAMS, OFFSETS, default_intervals
 from vehicle_sim.mavlink.telemetry import Telemetry
 from vehicle_sim.world.range_sensor import RangeSample
@@ -105,22 +105,23 @@ class Vehicle:
         self._sent_changes = 0
         self._latest = -math.inf
         owner = ControlOwner(self.autopilot, link)
+        self.dispatcher = Dispatcher()
+        """All that it does for others."""
         self.aircraft: FreeAircraft | CoupledAircraft
         """What commands and missions are carried out by."""
         if isinstance(self.autopilot, FreeAutopilot):
             frame = LocalFrame(home)
             self._setpoints: SetpointServer = PositionSetpointServer(self.autopilot, owner, clock, frame)
             self.aircraft = FreeAircraft(self.autopilot, owner, frame)
+            self.dispatcher.register(mavlink.MAVLink_heartbeat_message, self._on_heartbeat)
             self.telemetry.capabilities |= (
                 mavlink.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
                 | mavlink.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
             )
             plans = plans or MissionPlans(home, self.aircraft)
         else:
-            self._setpoints = SetpointServer(self.autopilot, owner, clock)
+            self._setpoints = AttitudeSetpointServer(self.autopilot, owner, clock)
             self.aircraft = CoupledAircraft(self.autopilot, owner)
-        self.dispatcher = Dispatcher()
-        """All that it does for others."""
         # A further protocol registers its messages and commands here.
         self._setpoints.register(self.dispatcher)
         LinkServices(clock).register(self.dispatcher)
@@ -133,7 +134,7 @@ class Vehicle:
         self._other_components = OtherComponents(own, own if free else payload_unit, of_payload_unit)
         ParameterServer(self.parameters, owner, self._peers).register(self.dispatcher)
         FileServices().register(self.dispatcher)
-        UnservedInputs(system_id, STICKS if free else {**STICKS, **TEAM_SETPOINTS}).register(self.dispatcher)
+        UnservedInputs(system_id, STICKS).register(self.dispatcher)
 
     @property
     def refused_setpoints(self) -> int:
@@ -194,6 +195,10 @@ class Vehicle:
                 self.dispatcher.dispatch(received, request)
             else:
                 self._other_components.handle(received, request)
+
+    def _on_heartbeat(self, message: mavlink.MAVLink_heartbeat_message, request: Request) -> None:
+        if message.type == mavlink.MAV_TYPE_GCS and isinstance(self.autopilot, FreeAutopilot):
+            self.autopilot.ground_heartbeat_received(request.now)
 
     def datagrams_to_send(self, now: float) -> list[tuple[bytes, Address]]:
         """Return all that is due at ``now`` (s), each with its address."""

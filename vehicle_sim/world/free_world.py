@@ -5,19 +5,19 @@ All that crosses this boundary is SI, north-east-down, forward-right-down, quate
 
 import math
 from collections.abc import Sequence
-from typing import Self
 
 import numpy as np
 import pybullet
 
 from gcs.config.tables import UavConfig, WorldConfig
 from idc_controller.arrays import Array
-from idc_controller.rotations_float import into_body
-from vehicle_sim.world.errors import SimulationError, UnsupportedWorld
+from idc_controller.rotations_float import Vector, into_body
+from vehicle_sim.world.engine import EngineWorld
+from vehicle_sim.world.errors import UnsupportedWorld
 from vehicle_sim.world.ground import NO_CONTACTS, Contacts
 from vehicle_sim.world.multibody import DISC_THICKNESS
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
-from vehicle_sim.world.readings import ACCELEROMETER_RANGE
+from vehicle_sim.world.sensors import ACCELEROMETER_RANGE
 from vehicle_sim.world.state_kernels import STATE_COLUMNS
 from vehicle_sim.world.world_state import FreeState, UavState, flipped, quaternion_from_engine, upward_axis
 
@@ -29,7 +29,7 @@ _LIFTED = 0.05  # m above the ground: it has taken off
 _UPRIGHT = 0.5  # of the upward axis: it stands, and has not turned over
 
 
-class FreeWorld:
+class FreeWorld(EngineWorld):
     """One simulated world of free UAVs, with the interface of :class:`~.world.World` as far as a swarm uses it.
 
     At the start they stand on the ground in a row, :data:`SPACING` apart, with yaw 0. Equal calls give equal results to
@@ -47,16 +47,11 @@ class FreeWorld:
     ) -> None:
         if 2.0 * max(uav.inertia) > sum(uav.inertia) * (1.0 + 1e-9):
             raise UnsupportedWorld(f"uav.inertia: no rigid body has the moments of inertia {list(uav.inertia)}")
-        self.physics_hz, self.g = physics_hz, g
+        super().__init__(physics_hz, g, gui)
+        self.g = g
         self._rest = settings.rest
-        self._client = client = pybullet.connect(pybullet.GUI if gui else pybullet.DIRECT)
-        if client < 0:
-            raise SimulationError("the physics engine does not start" + (" (is there a display?)" if gui else ""))
+        client = self._client
         try:
-            pybullet.setGravity(0.0, 0.0, -g, physicsClientId=client)
-            pybullet.setPhysicsEngineParameter(
-                fixedTimeStep=1.0 / physics_hz, numSubSteps=0, deterministicOverlappingPairs=1, physicsClientId=client
-            )
             plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=client)
             self._ground = pybullet.createMultiBody(0.0, plane, useMaximalCoordinates=1, physicsClientId=client)
             disc = pybullet.createCollisionShape(
@@ -67,13 +62,13 @@ class FreeWorld:
         except BaseException:
             self.close()
             raise
-        self.steps = 0
         self.any_lifted = False
         """A vehicle has left the ground."""
         self._thrusts = (0.0,) * vehicles
         self._contacts = NO_CONTACTS
         self._states, self._changes = np.zeros((vehicles, STATE_COLUMNS)), np.zeros((vehicles, 3))
-        self._velocities = np.zeros((vehicles, 3))
+        self._velocities, self._felt_velocities = np.zeros((vehicles, 3)), np.zeros((vehicles, 3))
+        self._felt_at = 0
         self._read()
 
     def _add(self, uav: UavConfig, shape: int, index: int, friction: float) -> int:
@@ -86,11 +81,6 @@ class FreeWorld:
         )  # fmt: skip
         pybullet.changeDynamics(body, -1, localInertiaDiagonal=uav.inertia, physicsClientId=client)
         return body
-
-    @property
-    def time(self) -> float:
-        """Seconds since the world was made."""
-        return self.steps / self.physics_hz
 
     @property
     def at_rest(self) -> bool:
@@ -144,6 +134,17 @@ class FreeWorld:
         """Return what touches after the last step. A UAV that stands upright on the ground does not count as a pair."""
         return self._contacts
 
+    def specific_forces(self) -> list[Vector]:
+        """Return what the accelerometers measured since the last call (N), in the bodies' frames (m/s2), no noise."""
+        rate = self.physics_hz / max(self.steps - self._felt_at, 1)
+        changes = ((self._velocities - self._felt_velocities) * rate).tolist()
+        self._felt_at, self._felt_velocities = self.steps, self._velocities
+        attitudes = self._states[:, 3:7].tolist()
+        return [
+            into_body((w, q_x, q_y, q_z), (x, y, z - self.g))
+            for (w, q_x, q_y, q_z), (x, y, z) in zip(attitudes, changes, strict=True)
+        ]
+
     def clipped(self) -> Sequence[int]:
         """Return whose accelerometer exceeded its range in the last step, 1 .. N: without contact nobody's."""
         if self._contacts is NO_CONTACTS:
@@ -151,18 +152,6 @@ class FreeWorld:
         rate, g = self.physics_hz, self.g
         changes = enumerate(self._changes.tolist(), start=1)
         return [i for i, (x, y, z) in changes if math.hypot(x * rate, y * rate, z * rate - g) > ACCELEROMETER_RANGE]
-
-    def close(self) -> None:
-        """End the world; harmless when it has ended."""
-        if self._client >= 0:
-            pybullet.disconnect(self._client)
-            self._client = -1
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def _read(self) -> None:
         """Read the state after a step.

@@ -11,6 +11,7 @@ from idc_controller.arrays import Array
 from idc_controller.parameters import SystemParameters
 from vehicle_sim.world.link_force_kernels import link_tensions
 from vehicle_sim.world.multibody import Multibody
+from vehicle_sim.world.sensors import ACCELEROMETER_RANGE
 from vehicle_sim.world.state_kernels import (
     AXIS,
     LOAD_COLUMNS,
@@ -26,11 +27,6 @@ Pose = tuple[tuple[float, float, float], tuple[float, float, float, float]]
 """Position and x-first quaternion in the engine's frame."""
 Uavs = Sequence[tuple[tuple[float, ...], ...]]
 """States of the UAVs: position, attitude, four that are not used, velocity, angular velocity."""
-ACCELEROMETER_RANGE = 8.0 * 9.80665
-"""m/s2: full scale of the accelerometers of payload and vehicles, one of those that IMUs offer (8 g).
-
-The engine stops a part within one step: a contact of more than about 0.2 m/s exceeds it.
-"""
 
 
 class Readings:

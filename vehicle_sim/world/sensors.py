@@ -15,6 +15,12 @@ from vehicle_sim.world.state_kernels import STATE_COLUMNS, measure
 #: The payload's navigation unit draws from the generator of this id; vehicles count from 1.
 PAYLOAD_UNIT = 0
 
+ACCELEROMETER_RANGE = 8.0 * 9.80665
+"""m/s2: full scale of the accelerometers of payload and vehicles, one of those that IMUs offer (8 g).
+
+The engine stops a part within one step: a contact of more than about 0.2 m/s exceeds it.
+"""
+
 _BLOCK = 256
 _CHANNELS = 12
 _FAR = 1e6

@@ -5,7 +5,6 @@ All that crosses this boundary is SI, north-east-down, forward-right-down, quate
 
 import math
 from collections.abc import Sequence
-from typing import Self
 
 import pybullet
 
@@ -13,7 +12,7 @@ from gcs.config.tables import WorldConfig
 from idc_controller.arrays import Array
 from idc_controller.parameters import SystemParameters
 from idc_controller.rotations_float import Quaternion, Vector
-from vehicle_sim.world.errors import SimulationError
+from vehicle_sim.world.engine import EngineWorld
 from vehicle_sim.world.ground import NO_CONTACTS, ContactDetector, Contacts, Cradles, Ground
 from vehicle_sim.world.multibody import check_supported, load_multibody
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
@@ -26,7 +25,7 @@ _apply_force, _apply_torque = pybullet.applyExternalForce, pybullet.applyExterna
 _step_simulation = pybullet.stepSimulation
 
 
-class World:
+class World(EngineWorld):
     """One simulated world; several may live in one process. Use it as a context manager or call :meth:`close`.
 
     At the start the payload stands on a pad at the origin, level, links upright, each UAV on top of its link in a
@@ -46,15 +45,10 @@ class World:
         gui: bool = False,
         settings: WorldConfig = WorldConfig(),
     ) -> None:
-        if physics_hz <= 0:
-            raise SimulationError(f"physics_hz must be positive, got {physics_hz}")
         check_supported(parameters)
+        super().__init__(physics_hz, parameters.g, gui)
         self.parameters = parameters
-        self.physics_hz = physics_hz
         self._rest = settings.rest
-        self._client = pybullet.connect(pybullet.GUI if gui else pybullet.DIRECT)
-        if self._client < 0:
-            raise SimulationError("the physics engine does not start" + (" (is there a display?)" if gui else ""))
         try:
             self._build(settings)
         except BaseException:
@@ -63,11 +57,6 @@ class World:
 
     def _build(self, settings: WorldConfig) -> None:
         parameters, client = self.parameters, self._client
-        pybullet.setGravity(0.0, 0.0, -parameters.g, physicsClientId=client)
-        pybullet.setPhysicsEngineParameter(
-            fixedTimeStep=1.0 / self.physics_hz, numSubSteps=0, deterministicOverlappingPairs=1,
-            physicsClientId=client,
-        )  # fmt: skip
         self._ground = Ground(client, parameters.payload, settings.pad)
         place = (0.0, 0.0, settings.pad.thickness + parameters.payload.below)
         self._system = load_multibody(client, parameters, place, settings.bodies)
@@ -75,7 +64,6 @@ class World:
         weights = [float(m_i) * parameters.g for m_i in parameters.m]
         self._cradles = Cradles(client, self._system.body, self._system.uavs, weights, settings.cradles)
         self._readings = Readings(client, self._system, parameters, 1.0 / self.physics_hz)
-        self.steps = 0
         self.thrusts = (0.0,) * parameters.number_of_uavs
         """The UAVs' thrusts of the last step (N)."""
         self._uav_forces: Sequence[Sequence[float]] | None = None
@@ -85,11 +73,6 @@ class World:
         )
         for i, uav in enumerate(self._readings.uavs):
             self._cradles.latch(i, uav[0], uav[1])
-
-    @property
-    def time(self) -> float:
-        """Seconds since the world was made."""
-        return self.steps / self.physics_hz
 
     @property
     def at_rest(self) -> bool:
@@ -214,18 +197,6 @@ class World:
     def touching_ground(self) -> bool:
         """Return True if the payload stands on pad or ground."""
         return self._is_low and self.contacts().standing
-
-    def close(self) -> None:
-        """End the world; harmless when it has ended."""
-        if self._client >= 0:
-            pybullet.disconnect(self._client)
-            self._client = -1
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     @property
     def _is_low(self) -> bool:

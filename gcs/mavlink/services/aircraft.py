@@ -17,6 +17,27 @@ MessageKey = tuple[int, int]
 """Component and message id."""
 
 
+class Place(NamedTuple):
+    """Latitude and longitude (deg), altitude (m above mean sea level); NaN: not given."""
+
+    latitude: float
+    longitude: float
+    altitude: float
+
+
+class Turn(NamedTuple):
+    """A change of heading, as MAV_CMD_CONDITION_YAW commands it.
+
+    ``angle`` (rad) from north, or from the heading if it ``is_relative``; ``rate`` (rad/s, NaN: the aircraft's own);
+    ``direction`` 1 clockwise, -1 counter-clockwise, 0 the shorter way.
+    """
+
+    angle: float
+    rate: float
+    direction: int
+    is_relative: bool
+
+
 class Reposition(NamedTuple):
     """Where MAV_CMD_DO_REPOSITION sends an aircraft; NaN: as it is now.
 
@@ -61,6 +82,12 @@ class Aircraft(Protocol):
 
     def change_speed(self, speed: float, now: float) -> Answer:
         """Fly with another speed (m/s) from now on."""
+
+    def turn(self, turn: Turn, now: float) -> Answer:
+        """Change the heading where it is."""
+
+    def set_home(self, place: Place | None, now: float) -> Answer:
+        """Return to a ``place`` from now on; None: to where it is."""
 
     def start_mission(self, first: int, now: float) -> Answer:
         """Fly the mission from item ``first`` on."""

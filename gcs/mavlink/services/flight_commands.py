@@ -1,13 +1,13 @@
-"""Commands that an aircraft flies: arming, take-off, go-to, speed, missions, return, landing."""
+"""Commands that an aircraft flies: arming, take-off, go-to, heading, speed, missions, home, return, landing."""
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
 from gcs.mavlink.layout import PackedRun
-from gcs.mavlink.services.aircraft import Aircraft, MessageSource, Reposition
+from gcs.mavlink.services.aircraft import Aircraft, MessageSource, Place, Reposition, Turn
 from gcs.mavlink.services.answer import ACCEPTED, UNSUPPORTED_FRAME, Answer, denied
 from gcs.mavlink.services.dispatcher import Command, CommandHandler, Dispatcher, Request
 from gcs.mavlink.services.streams import whole
@@ -22,14 +22,7 @@ _AIRSPEED, _GROUND_SPEED = 0, 1
 _UNCHANGED = -1.0
 _PAUSE, _CONTINUE = 0.0, 1.0
 _ITEMS_MAX = 1 << 16
-
-
-class _Place(NamedTuple):
-    """Latitude and longitude (deg), altitude (m above mean sea level); NaN: not given."""
-
-    latitude: float
-    longitude: float
-    altitude: float
+_WHOLE_TURN = 360.0
 
 
 class FlightCommands:
@@ -50,7 +43,9 @@ class FlightCommands:
                 mavlink.MAV_CMD_NAV_LAND: self._entering(px4.MODE_LAND),
                 mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: self._entering(px4.MODE_RETURN),
                 mavlink.MAV_CMD_DO_REPOSITION: self._reposition,
+                mavlink.MAV_CMD_CONDITION_YAW: self._turn,
                 mavlink.MAV_CMD_DO_CHANGE_SPEED: self._change_speed,
+                mavlink.MAV_CMD_DO_SET_HOME: self._set_home,
                 mavlink.MAV_CMD_MISSION_START: self._start_mission,
                 mavlink.MAV_CMD_DO_PAUSE_CONTINUE: self._pause_continue,
             }
@@ -83,11 +78,8 @@ class FlightCommands:
         place = self._place(message, request)
         if place is None:
             return UNSUPPORTED_FRAME
-        for value, limit, parameter in ((place.latitude, 90.0, 5), (place.longitude, 180.0, 6)):
-            if abs(value) > limit:
-                return denied(f"Reposition denied: {value:g} deg is no place", parameter)
-        if math.isinf(place.altitude):
-            return denied("Reposition denied: the altitude is infinite", 7)
+        if (wrong := _wrong_place("Reposition", place)) is not None:
+            return wrong
         speed = message.param1 if message.param1 > 0.0 else math.nan
         return self._aircraft.reposition(Reposition(*place, message.param4, speed), request.now)
 
@@ -100,6 +92,39 @@ class FlightCommands:
         if not 0.0 < message.param2 < math.inf:
             return denied(f"Speed denied: {message.param2:g} m/s is none", 2)
         return self._aircraft.change_speed(message.param2, request.now)
+
+    def _turn(self, message: Command, request: Request) -> Answer:
+        """Turn in AUTO.LOITER to a heading (param1, deg) or by it (param4 1): param2 deg/s, param3 direction."""
+        for number, value in enumerate((message.param1, message.param2, message.param3, message.param4), start=1):
+            if not math.isfinite(value):
+                return denied(f"Turn denied: param{number} is {value:g}", number)
+        if abs(message.param1) > _WHOLE_TURN:
+            return denied(f"Turn denied: {message.param1:g} deg is more than a whole turn", 1)
+        if message.param2 < 0.0:
+            return denied(f"Turn denied: {message.param2:g} deg/s is no rate", 2)
+        if message.param3 not in (-1.0, 0.0, 1.0):
+            return denied(f"Turn denied: param3 {message.param3:g} is none of -1, 0, 1", 3)
+        if message.param4 not in (0.0, 1.0):
+            return denied(f"Turn denied: param4 {message.param4:g} is neither 0 nor 1", 4)
+        rate = math.radians(message.param2) if message.param2 > 0.0 else math.nan
+        turn = Turn(math.radians(message.param1), rate, int(message.param3), message.param4 == 1.0)
+        return self._aircraft.turn(turn, request.now)
+
+    def _set_home(self, message: Command, request: Request) -> Answer:
+        """Return to a place from now on (param1 0), or to where it is (1); angles of home are not kept."""
+        if message.param1 == 1.0:
+            return self._aircraft.set_home(None, request.now)
+        if message.param1 != 0.0:
+            return denied(f"Home denied: param1 {message.param1:g} is neither 0 nor 1", 1)
+        place = self._place(message, request)
+        if place is None:
+            return UNSUPPORTED_FRAME
+        if (wrong := _wrong_place("Home", place)) is not None:
+            return wrong
+        for value, parameter in zip(place, (5, 6, 7), strict=True):
+            if math.isnan(value):
+                return denied(f"Home denied: {place._fields[parameter - 5]} is not given", parameter)
+        return self._aircraft.set_home(place, request.now)
 
     def _start_mission(self, message: Command, request: Request) -> Answer:
         """Fly the mission from an item (param1) to its end."""
@@ -125,10 +150,10 @@ class FlightCommands:
         enter.__doc__ = f"Enter {px4.mode_name(mode)}."
         return enter
 
-    def _place(self, message: Command, request: Request) -> _Place | None:
+    def _place(self, message: Command, request: Request) -> Place | None:
         """Return the place in a command, None for a MAV_FRAME that is not global."""
         if isinstance(message, mavlink.MAVLink_command_long_message):
-            return _Place(message.param5, message.param6, message.param7)
+            return Place(message.param5, message.param6, message.param7)
         if message.frame in _ABOVE_SEA:
             base = 0.0
         elif message.frame in _ABOVE_HOME:
@@ -136,7 +161,7 @@ class FlightCommands:
         else:
             return None
         latitude, longitude = (math.nan if x in _NOT_GIVEN else x * 1e-7 for x in (message.x, message.y))
-        return _Place(latitude, longitude, base + message.z)
+        return Place(latitude, longitude, base + message.z)
 
     def _home_altitude(self, now: float) -> float:
         """Return the altitude of home (m above mean sea level), as HOME_POSITION has it; NaN: there is none yet."""
@@ -146,3 +171,11 @@ class FlightCommands:
         layout, payload = built[0]
         home: Any = layout.message(payload)
         return float(home.altitude) * 1e-3
+
+
+def _wrong_place(what: str, place: Place) -> Answer | None:
+    """Return the refusal of a command because of its place; None: nothing is wrong with it."""
+    for value, limit, parameter in ((place.latitude, 90.0, 5), (place.longitude, 180.0, 6)):
+        if abs(value) > limit:
+            return denied(f"{what} denied: {value:g} deg is no place", parameter)
+    return denied(f"{what} denied: the altitude is infinite", 7) if math.isinf(place.altitude) else None

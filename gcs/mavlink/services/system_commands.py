@@ -1,4 +1,4 @@
-"""Commands about the system itself: home, prearm checks, storage of parameters, restart."""
+"""Commands about the system itself: prearm checks, storage of parameters, restart."""
 
 import math
 
@@ -34,7 +34,6 @@ class SystemCommands:
                 mavlink.MAV_CMD_RUN_PREARM_CHECKS: self._run_prearm_checks,
                 mavlink.MAV_CMD_PREFLIGHT_STORAGE: self._storage,
                 mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN: self._reboot,
-                mavlink.MAV_CMD_DO_SET_HOME: self._set_home,
             }
         )
 
@@ -66,7 +65,3 @@ class SystemCommands:
         if message.param1 == 0.0:
             return ACCEPTED
         return denied("Reboot denied: a simulated vehicle starts with its world; start vehicle-sim anew", 1)
-
-    def _set_home(self, message: Command, request: Request) -> Answer:
-        """Deny: home is the origin of the local frame."""
-        return denied("Home denied: it is the origin of the simulated world; vehicle-sim --mission sets it")

@@ -18,7 +18,26 @@ STICKS: Mapping[type[Message], str] = {
 """Messages of a remote control, and what is said of them."""
 
 _REMINDER = 10.0  # s; between texts to one peer
-_REMEMBERED = 32  # peers
+_REMEMBERED = 32  # peers and topics
+
+
+class Reminders:
+    """Texts about what comes many times a second, each sent to a peer now and then."""
+
+    def __init__(self) -> None:
+        self._said: dict[tuple[Address, str], float] = {}
+        """When a text about a topic was sent to a peer last (s)."""
+
+    def send(self, text: str, topic: str, request: Request) -> None:
+        """Send a text to the sender of a message, unless one about the ``topic`` was sent a moment ago."""
+        key = request.peer.address, topic
+        if request.now - self._said.get(key, -math.inf) < _REMINDER:
+            return
+        self._said.pop(key, None)
+        if len(self._said) >= _REMEMBERED:
+            del self._said[next(iter(self._said))]
+        self._said[key] = request.now
+        request.peer.send_statustext(text)
 
 
 class UnservedInputs:
@@ -28,8 +47,7 @@ class UnservedInputs:
         """``system``: the aircraft's id; ``texts``: what is said of each kind of message."""
         self._system = system
         self._texts = texts
-        self._said: dict[tuple[Address, str], float] = {}
-        """When each text was sent to a peer last (s)."""
+        self._reminders = Reminders()
 
     def register(self, dispatcher: Dispatcher) -> None:
         """Take the messages that no service has taken: to be called last."""
@@ -39,13 +57,6 @@ class UnservedInputs:
 
     def _on_message(self, message: Any, request: Request) -> None:
         # MANUAL_CONTROL names its addressee in a field of its own.
-        if getattr(message, "target", self._system) not in (0, self._system):
-            return
-        key = request.peer.address, self._texts[type(message)]
-        if request.now - self._said.get(key, -math.inf) < _REMINDER:
-            return
-        self._said.pop(key, None)
-        if len(self._said) >= _REMEMBERED:
-            del self._said[next(iter(self._said))]
-        self._said[key] = request.now
-        request.peer.send_statustext(key[1])
+        if getattr(message, "target", self._system) in (0, self._system):
+            text = self._texts[type(message)]
+            self._reminders.send(text, text, request)

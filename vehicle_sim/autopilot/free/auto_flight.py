@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from gcs.config.vehicle_settings import FreeFlightSettings
 from idc_controller.rotations_float import Vector
@@ -54,6 +54,9 @@ class AutoFlight:
         """The last goal (NED, m)."""
         self._since: float | None = None
         """When the vehicle arrived at the goal of the phase (s)."""
+        self._turn_left = 0.0
+        """Commanded change of the heading that is still to be made (rad)."""
+        self._turn_rate = 0.0
 
     @property
     def finished(self) -> bool:
@@ -64,6 +67,21 @@ class AutoFlight:
     def is_landing(self) -> bool:
         """Return True if it descends to the ground."""
         return bool(self._phases) and isinstance(self._phases[0], Descent)
+
+    def turn(self, angle: float, rate: float) -> None:
+        """Change the heading by ``angle`` (rad, clockwise) with ``rate`` (rad/s), and keep it then."""
+        self._turn_left, self._turn_rate = angle, rate
+        self._phases = [
+            replace(phase, yaw=math.nan, looks_ahead=False) if isinstance(phase, Goal) else phase
+            for phase in self._phases
+        ]
+
+    def destination(self, here: Vector) -> Vector:
+        """Return where the phase ends (NED, m), as far as that is known; ``here``: position of the set-point."""
+        phase = self._phases[0] if self._phases else Brake()
+        if isinstance(phase, Descent):
+            return here[0], here[1], phase.ground
+        return filled(phase.position, here) if isinstance(phase, Goal) else here
 
     def advance(
         self,
@@ -81,6 +99,8 @@ class AutoFlight:
         if not self._phases:
             return
         phase = self._phases[0]
+        if self._turn_left:
+            self._turn_left -= motion.turn_by(self._turn_left, self._turn_rate, step)
         if isinstance(phase, Descent):
             sinking = landing_speed(phase.ground - motion.position[2])
             motion.with_velocity((0.0, 0.0, sinking), step)
@@ -106,11 +126,8 @@ class AutoFlight:
         self.place = goal.position
         if not math.isnan(sum(goal.position)):
             return goal
-        x, y, z = (
-            here if math.isnan(there) else there for there, here in zip(goal.position, motion.position, strict=True)
-        )
-        resolved = Goal((x, y, z), goal.radius, goal.yaw, goal.hold, goal.looks_ahead, goal.climb_speed)
-        self.place = x, y, z
+        self.place = filled(goal.position, motion.position)
+        resolved = replace(goal, position=self.place)
         self._phases[0] = resolved
         return resolved
 
@@ -125,3 +142,23 @@ class AutoFlight:
     def _has_arrived(self, goal: Goal, measured: Measurement) -> bool:
         x, y, z = (there - here for there, here in zip(goal.position, measured.position, strict=True))
         return math.hypot(x, y) <= goal.radius and abs(z) <= self._settings.altitude_radius
+
+
+def turn_angle(yaw: float, angle: float, direction: int, is_relative: bool) -> float:
+    """Return by which angle (rad, clockwise) to turn from ``yaw`` to ``angle``, or by that if it ``is_relative``.
+
+    ``direction`` 1 clockwise, -1 counter-clockwise, 0 the shorter way; of a relative angle as its sign says.
+    """
+    if is_relative:
+        return angle * direction if direction else angle
+    whole = 2.0 * math.pi
+    ahead = (angle - yaw) % whole
+    if direction == 0:
+        return math.remainder(ahead, whole)
+    return ahead if direction > 0 or ahead == 0.0 else ahead - whole
+
+
+def filled(place: Vector, here: Vector) -> Vector:
+    """Return ``place``, of which what is NaN is that of ``here``."""
+    x, y, z = (own if math.isnan(there) else there for there, own in zip(place, here, strict=True))
+    return x, y, z

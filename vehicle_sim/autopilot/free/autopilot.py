@@ -6,15 +6,16 @@ from typing import ClassVar
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
-from gcs.mavlink.services.answer import ACCEPTED, Answer, rejected_for_now
+from gcs.mavlink.services.answer import ACCEPTED, Answer, denied, rejected_for_now
 from idc_controller.rotations_float import Vector, attitude_of_force, euler_of
 from vehicle_sim.autopilot.actuation import NO_RATES
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.failsafe import check_failsafes
 from vehicle_sim.autopilot.flight_state import TIME_TOLERANCE
 from vehicle_sim.autopilot.free import modes
-from vehicle_sim.autopilot.free.failsafe import FREE
-from vehicle_sim.autopilot.free.mission import Mission
+from vehicle_sim.autopilot.free.auto_flight import filled, turn_angle
+from vehicle_sim.autopilot.free.failsafe import FREE, is_data_link_lost
+from vehicle_sim.autopilot.free.mission import Mission, MissionStep
 from vehicle_sim.autopilot.free.position_control import Reference
 from vehicle_sim.autopilot.free.state import FreeFlightState
 from vehicle_sim.autopilot.position_setpoints import PositionSetpoint
@@ -23,6 +24,11 @@ from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
 from vehicle_sim.world.sensors import Measurement
 
 _GROUNDED_IN_OFFBOARD = 3.0  # s; until a vehicle that set-points have put on the ground disarms
+_OF_OTHER_SPEEDS = {
+    px4.MODE_OFFBOARD: "flies the speed of its set-points",
+    px4.MODE_LAND: "has no horizontal speed",
+}
+"""Modes in which no change of speed has an effect."""
 
 
 class FreeAutopilot(Autopilot):
@@ -36,7 +42,7 @@ class FreeAutopilot(Autopilot):
 
     @property
     def home(self) -> Vector:
-        """Where it returns to (NED, m): where it was armed last, before that where it was first."""
+        """Where it returns to (NED, m): where it was armed last, before that where it was first, or as commanded."""
         return self.state.home or super().home
 
     @property
@@ -48,13 +54,36 @@ class FreeAutopilot(Autopilot):
 
     # What the ground commands
 
+    def ground_message_received(self, now: float) -> None:
+        """See :meth:`.Autopilot.ground_message_received`; the data link is that of HEARTBEATs, as in PX4."""
+        self._decide_anew()
+
+    def ground_heartbeat_received(self, now: float) -> None:
+        """A HEARTBEAT of a ground station has come: the data link is up."""
+        self.state.link_time = now
+
+    def arming_problem(self, now: float) -> str | None:
+        """See :meth:`.Autopilot.arming_problem`; as in PX4 it wants the ground station whose loss it would react to."""
+        problem = super().arming_problem(now)
+        if problem is None and self.state.reckoning.is_lost:
+            return "no position"
+        if problem is None and is_data_link_lost(self.state, now):
+            return "NAV_DLL_ACT is set, and no HEARTBEAT of a ground station (MAV_TYPE_GCS) comes"
+        estimate = self.state.estimate
+        if problem is None and estimate is not None and (breach := self.state.refused_by_fence(estimate.position)):
+            return f"beyond the fence: {breach}"
+        return problem
+
     def arm(self, now: float, force: bool = False) -> Answer:
         """See :meth:`.Autopilot.arm`; home is where it stands, and what its mode flies begins."""
         was_armed = self.state.armed
         answer = super().arm(now, force)
-        estimate = self.state.navigation.estimate
+        estimate = self.state.estimate
         if answer == ACCEPTED and not was_armed and estimate is not None:
-            self.state.home = estimate.position
+            self.state.reckoning.restart()
+            self.state.armed_at = estimate.position
+            if not self.state.home_is_commanded:
+                self.state.home = estimate.position
             modes.begin(self.state)
         return answer
 
@@ -67,10 +96,12 @@ class FreeAutopilot(Autopilot):
 
     def enter_offboard(self, setpoint: Setpoint, received: float, now: float) -> Answer:
         """Fly the set-points of a ground, the last of which was ``received`` (s) a moment ago."""
+        if self.state.armed and self.state.reckoning.is_lost and not isinstance(setpoint, AttitudeSetpoint):
+            return modes.without_position("OFFBOARD by position")
         answer = super().enter_offboard(setpoint, received, now)
         if answer == ACCEPTED:
             self.state.flight = None
-            estimate = self.state.navigation.estimate
+            estimate = self.state.estimate
             if estimate is not None:
                 self.state.motion.start(estimate.position, estimate.velocity, euler_of(estimate.attitude)[2])
         return answer
@@ -86,7 +117,7 @@ class FreeAutopilot(Autopilot):
         return answer
 
     def take_off(self, altitude: float, now: float) -> Answer:
-        """Take off to ``altitude`` (m above home; NaN: the parameter's), at once or when it is armed."""
+        """Take off to ``altitude`` (m above the ground; NaN: the parameter's), at once or when it is armed."""
         self.state.take_off_altitude = altitude
         return self._enter(px4.MODE_TAKEOFF)
 
@@ -98,19 +129,65 @@ class FreeAutopilot(Autopilot):
         state = self.state
         if not state.armed or not state.land.in_air:
             return rejected_for_now("Reposition denied: not flying")
+        if state.reckoning.is_lost:
+            return modes.without_position("Reposition")
+        estimate = state.estimate
+        assert estimate is not None
+        if breach := state.refused_by_fence(filled(position, estimate.position)):
+            return denied(f"Reposition denied: beyond the fence: {breach}")
         state.mode, state.failsafe = px4.MODE_HOLD, False
-        state.speed = speed if speed > 0.0 else math.nan
+        state.speed = speed if speed > 0.0 else state.speed
         state.fly([state.goal(position, yaw, hold=math.inf)])
         self._decide_anew()
         return ACCEPTED
 
     def change_speed(self, speed: float, now: float) -> Answer:
-        """Fly with another horizontal speed (m/s) from now on, up to the next mode; not above 0: the parameter's."""
+        """Fly with another horizontal speed (m/s) from now on, up to the next mode that is commanded."""
         state = self.state
-        if not state.armed:
+        if not state.armed or (not state.land.in_air and state.flight is None):
             return rejected_for_now("Speed change denied: not flying")
-        state.speed = speed if speed > 0.0 else math.nan
+        if self.mode in _OF_OTHER_SPEEDS:
+            return rejected_for_now(f"Speed change denied: {px4.mode_name(self.mode)} {_OF_OTHER_SPEEDS[self.mode]}")
+        state.speed = speed
         return ACCEPTED
+
+    def turn(self, angle: float, rate: float, direction: int, is_relative: bool) -> Answer:
+        """Turn to a heading (rad), or by an angle, where it holds or on the way to where it will.
+
+        ``rate`` in rad/s (NaN: that of moving set-points); ``direction`` 1 clockwise, -1 counter-clockwise, 0 the
+        shorter way.
+        """
+        state, rate_max = self.state, self.state.settings.free.yaw_rate
+        if not state.armed or state.flight is None or not state.land.in_air:
+            return rejected_for_now("Turn denied: not flying")
+        if self.mode != px4.MODE_HOLD:
+            return rejected_for_now(f"Turn denied: {px4.mode_name(self.mode)} has its own heading; enter AUTO.LOITER")
+        if rate > rate_max:
+            return denied(
+                f"Turn denied: {math.degrees(rate):g} deg/s, the limit is {math.degrees(rate_max):.4g} deg/s", 2
+            )
+        state.flight.turn(
+            turn_angle(state.motion.yaw, angle, direction, is_relative), rate_max if math.isnan(rate) else rate
+        )
+        return ACCEPTED
+
+    def set_home(self, place: Vector | None) -> Answer:
+        """Return to ``place`` (NED, m) from now on, None: to where it is."""
+        estimate = self.state.estimate
+        if place is None and (estimate is None or not self.state.has_position(self.state.now)):
+            return modes.without_position("Home")
+        self.state.home_is_commanded = place is not None
+        self.state.home = estimate.position if place is None and estimate is not None else place
+        if self.mode == px4.MODE_RETURN and self.state.armed:
+            modes.return_home(self.state)
+        return ACCEPTED
+
+    def replace_steps(self, steps: tuple[MissionStep, ...]) -> None:
+        """Fly the mission's items at other places from now on; its progress stays."""
+        state = self.state
+        state.mission.steps = steps
+        if state.armed and state.mode == px4.MODE_MISSION and not state.failsafe:
+            modes.fly_mission(state)
 
     def take_mission(self, mission: Mission) -> None:
         """Have another mission from now on; one that is being flown is flown from its current item."""
@@ -128,12 +205,20 @@ class FreeAutopilot(Autopilot):
 
     # The onboard loop
 
+    def feel(self, force: Vector, now: float) -> None:
+        """See :meth:`.Autopilot.feel`; in flight the position goes on by it while none is measured."""
+        super().feel(force, now)
+        state = self.state
+        if (state.armed or state.reckoning.is_lost) and state.specific_force is not None:
+            is_clipped = state.specific_force != force
+            state.reckoning.advance(state.specific_force, is_clipped=is_clipped, now=now)
+
     def _supervise(self, now: float) -> None:
         state = self.state
-        estimate = state.navigation.estimate
+        estimate = state.estimate
         assert estimate is not None
         if state.home is None:
-            state.home = estimate.position
+            state.home = state.armed_at = estimate.position
         check_failsafes(FREE, state, now)
         if state.armed and state.land.in_air:
             self._check_ground(estimate, now)
@@ -183,7 +268,7 @@ class FreeAutopilot(Autopilot):
             return
         step = min(now - self._last_control, settings.step_max)
         self._last_control, self._control_due = now, now + settings.control_interval
-        measured = state.navigation.estimate
+        measured = state.estimate
         assert measured is not None
         if setpoint is not None:
             state.reference = self._reference_of(setpoint, step)
@@ -204,4 +289,4 @@ class FreeAutopilot(Autopilot):
         rate = 0.0 if math.isnan(setpoint.yaw_rate) else setpoint.yaw_rate
         yaw = motion.yaw + rate * step if math.isnan(setpoint.yaw) else setpoint.yaw
         motion.yaw = math.remainder(yaw, 2.0 * math.pi)
-        return Reference(setpoint.position, setpoint.velocity, setpoint.acceleration, motion.yaw, rate)
+        return Reference(setpoint.position, setpoint.velocity, setpoint.acceleration, motion.yaw, setpoint.yaw_rate)

@@ -10,6 +10,8 @@ from vehicle_sim.autopilot.free.auto_flight import Brake, Descent, Phase
 from vehicle_sim.autopilot.free.mission import Action, MissionStep
 from vehicle_sim.autopilot.free.state import FreeFlightState
 
+_FLOWN = (Action.TAKE_OFF, Action.FLY, Action.LAND)
+"""What is flown for an item of the mission has a place."""
 _EXACT = 0.3  # m, horizontal distance to a place above which a landing begins
 
 
@@ -18,11 +20,18 @@ def enter_mode(state: FreeFlightState, custom_mode: int) -> Answer:
     enter = ENTRY.get(custom_mode)
     if enter is None:
         return denied(f"{px4.mode_name(custom_mode)} denied: no such mode")
+    if state.armed and state.reckoning.is_lost and custom_mode != px4.MODE_LAND:
+        return without_position(px4.mode_name(custom_mode))
     answer = enter(state, custom_mode)
     if answer == ACCEPTED:
         state.mode, state.failsafe = custom_mode, False
         begin(state)
     return answer
+
+
+def without_position(what: str) -> Answer:
+    """Return the refusal of what needs a position, while none is measured."""
+    return rejected_for_now(f"{what} denied: no position")
 
 
 def begin(state: FreeFlightState) -> None:
@@ -64,15 +73,19 @@ def fly_mission(state: FreeFlightState) -> None:
 
 
 def return_home(state: FreeFlightState) -> None:
-    """Climb, fly home and land, as PX4 by default: near home no higher than it is far (a cone of 45 deg)."""
+    """Climb, fly to the nearest of home and the rally points, and land, as PX4 by default.
+
+    Near there it climbs no higher than that is far (a cone of 45 deg), but at least as high as the rally point.
+    """
     if not state.land.in_air:
         state.stop()
         return
-    measured, home = state.navigation.estimate, state.home
+    measured, home = state.estimate, state.home
     assert measured is not None and home is not None
     get = state.parameters
     x, y, z = measured.position
-    distance, radius = math.hypot(home[0] - x, home[1] - y), get[names.ACCEPTANCE_RADIUS]
+    north, east, height = min((home, *state.rally_points), key=lambda place: math.hypot(place[0] - x, place[1] - y))
+    distance, radius = math.hypot(north - x, east - y), get[names.ACCEPTANCE_RADIUS]
     altitude = get[names.RETURN_ALTITUDE]
     if distance <= radius:
         altitude = 2.0 * distance
@@ -80,22 +93,22 @@ def return_home(state: FreeFlightState) -> None:
         if distance <= get[names.RETURN_NEAR]:
             altitude = min(distance, altitude)
         altitude = max(altitude, 2.0 * radius)
-    top = min(z, home[2] - altitude)
-    low = home[2] - get[names.DESCEND_ALTITUDE]
+    top = min(z, height, home[2] - altitude)
+    low = min(home[2], state.ground) - get[names.DESCEND_ALTITUDE]
     state.fly(
         [
             Brake(),
             state.goal((math.nan, math.nan, top), radius=math.inf, looks_ahead=False),
-            state.goal((home[0], home[1], top), radius=_EXACT),
-            state.goal((home[0], home[1], max(top, low)), radius=_EXACT, looks_ahead=False),
-            Descent(home[2]),
+            state.goal((north, east, top), radius=_EXACT),
+            state.goal((north, east, max(top, low)), radius=_EXACT, looks_ahead=False),
+            Descent(state.ground),
         ]
     )
 
 
 def _phases(state: FreeFlightState, step: MissionStep) -> list[Phase]:
     """Return what is flown for a step of the mission; empty: it needs no flight."""
-    if step.action not in (Action.TAKE_OFF, Action.FLY, Action.LAND):
+    if step.action not in _FLOWN:
         return []
     x, y, z = step.position
     phases: list[Phase] = []
@@ -138,7 +151,7 @@ def _hold(state: FreeFlightState) -> None:
 
 
 def _take_off(state: FreeFlightState) -> None:
-    measured = state.navigation.estimate
+    measured = state.estimate
     assert measured is not None
     altitude = state.take_off_altitude
     if math.isnan(altitude):
@@ -187,6 +200,9 @@ def _when_disarmed(state: FreeFlightState, custom_mode: int) -> Answer:
 def _with_mission(state: FreeFlightState, custom_mode: int) -> Answer:
     if not state.mission.steps:
         return rejected_for_now("AUTO.MISSION denied: no mission")
+    for number, step in enumerate(state.mission.steps):
+        if step.action in _FLOWN and (breach := state.refused_by_fence(step.position)):
+            return denied(f"AUTO.MISSION denied: item {number} is beyond the fence: {breach}")
     if state.mission.finished:
         state.mission.restart()
     return ACCEPTED

@@ -20,7 +20,7 @@ class Reference(NamedTuple):
     velocity: Vector
     acceleration: Vector
     yaw: float
-    yaw_rate: float = 0.0
+    yaw_rate: float = math.nan
 
 
 class SpeedLimits(NamedTuple):

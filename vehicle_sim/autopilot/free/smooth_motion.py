@@ -76,6 +76,12 @@ class SmoothMotion:
         left = math.remainder(yaw - self.yaw, 2.0 * math.pi)
         self.yaw = math.remainder(self.yaw + min(max(left, -change_max), change_max), 2.0 * math.pi)
 
+    def turn_by(self, angle: float, rate: float, step: float) -> float:
+        """Turn by at most ``angle`` (rad) with ``rate`` (rad/s) for a ``step`` (s); return what was turned."""
+        change = min(max(angle, -rate * step), rate * step)
+        self.yaw = math.remainder(self.yaw + change, 2.0 * math.pi)
+        return change
+
     def _acceleration_for(self, change: float, limit: float) -> float:
         """Return the acceleration (m/s2) for a ``change`` of the velocity (m/s), which the jerk can still take back."""
         settings = self._settings

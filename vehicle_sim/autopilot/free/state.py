@@ -6,12 +6,18 @@ from dataclasses import dataclass, field
 
 from gcs.mavlink import px4
 from idc_controller.rotations_float import Vector, euler_of
-from vehicle_sim.autopilot.flight_state import FlightState
+from vehicle_sim.autopilot.flight_state import FlightState, PositionTarget
 from vehicle_sim.autopilot.free import parameters as names
 from vehicle_sim.autopilot.free.auto_flight import AutoFlight, Brake, Descent, Goal, Phase
+from vehicle_sim.autopilot.free.dead_reckoning import DeadReckoning
+from vehicle_sim.autopilot.free.fence import Fence
 from vehicle_sim.autopilot.free.mission import Mission
 from vehicle_sim.autopilot.free.position_control import PositionController, Reference, SpeedLimits
 from vehicle_sim.autopilot.free.smooth_motion import SmoothMotion
+from vehicle_sim.world.sensors import Measurement
+
+FENCE_NOTHING, FENCE_WARNING, FENCE_HOLD, FENCE_RETURN = 0, 1, 2, 3
+"""Values of GF_ACTION; any other: land."""
 
 
 @dataclass(eq=False)
@@ -19,6 +25,10 @@ class FreeFlightState(FlightState):
     """What the parts of a free vehicle's autopilot share, beside what any vehicle's do."""
 
     home: Vector | None = None
+    """Where it returns to (NED, m): where it was armed last, before that where it was first, or as commanded."""
+    home_is_commanded: bool = False
+    """Arming does not change it then, as in PX4."""
+    armed_at: Vector | None = None
     """Where it was armed last, before that where it was first (NED, m)."""
     flight: AutoFlight | None = None
     """What it flies by itself; None: nothing, or set-points."""
@@ -28,7 +38,12 @@ class FreeFlightState(FlightState):
     """s"""
     mission: Mission = field(default_factory=Mission)
     take_off_altitude: float = math.nan
-    """m above home, of the next take-off; NaN: the parameter's."""
+    """m above the ground, of the next take-off; NaN: the parameter's."""
+    fence: Fence = field(default_factory=Fence)
+    rally_points: tuple[Vector, ...] = ()
+    """Places beside home to which it may return (NED, m)."""
+    is_outside: bool = False
+    """It has breached the fence, and reacted to that."""
     speed: float = math.nan
     """m/s, horizontal, as commanded; NaN: the parameter's."""
     reference: Reference | None = None
@@ -36,8 +51,19 @@ class FreeFlightState(FlightState):
 
     def __post_init__(self) -> None:
         airframe, settings = self.airframe, self.settings.free
+        self.reckoning = DeadReckoning(self.navigation.arrays, airframe.g, settings)
         self.motion = SmoothMotion(settings)
         self.controller = PositionController(airframe.mass, airframe.rotors.thrust_max, airframe.g, settings)
+
+    @property
+    def estimate(self) -> Measurement | None:
+        """The state to fly by, also while the position is not measured."""
+        estimate = self.navigation.estimate
+        return None if estimate is None else self.reckoning.corrected(estimate)
+
+    def has_position(self, now: float) -> bool:
+        """Return True if usable samples come, and the position is measured."""
+        return super().has_position(now) and not self.reckoning.is_lost
 
     @property
     def flown_mode(self) -> int:
@@ -48,6 +74,40 @@ class FreeFlightState(FlightState):
     def is_descending(self) -> bool:
         """Return True if it descends to the ground."""
         return self.flight is not None and self.flight.is_landing
+
+    def position_target(self, now: float) -> PositionTarget | None:
+        """Return what the position control follows, and where that ends; None: an attitude is flown, or nothing."""
+        reference, flight = self.reference, self.flight
+        if reference is None:
+            return None
+        end = reference.position if flight is None else flight.destination(reference.position)
+        return PositionTarget(*reference, end)
+
+    def breach_of(self, place: Vector) -> str | None:
+        """Return how a place (NED, m; NaN: home's) breaches fence and limits about home; None: not, or no matter."""
+        get = self.parameters
+        if get[names.FENCE_ACTION] == FENCE_NOTHING or self.home is None:
+            return None
+        x, y, z = (own if math.isnan(there) else there for there, own in zip(place, self.home, strict=True))
+        distance, height = math.hypot(x - self.home[0], y - self.home[1]), self.home[2] - z
+        for value, limit, what in (
+            (distance, names.FENCE_DISTANCE, "from home"),
+            (height, names.FENCE_HEIGHT, "above home"),
+        ):
+            if value > get[limit] > 0.0:
+                return f"{value:.0f} m {what} ({limit} {get[limit]:g} m)"
+        return self.fence.breach(x, y)
+
+    def refused_by_fence(self, place: Vector) -> str | None:
+        """Return why a place (NED, m) may not be flown to; None: it may."""
+        binds = self.parameters[names.FENCE_ACTION] not in (FENCE_NOTHING, FENCE_WARNING)
+        return self.breach_of(place) if binds else None
+
+    def begin_failsafe(self, mode: int, now: float, *, until_setpoints: bool = False) -> None:
+        """Fly a ``mode`` that was not commanded, up to the next command or ``until_setpoints`` of OFFBOARD come."""
+        self.failsafe, self.failsafe_mode, self.failsafe_since = True, mode, now
+        if not until_setpoints:
+            self.mode = mode
 
     @property
     def limits(self) -> SpeedLimits:
@@ -72,7 +132,7 @@ class FreeFlightState(FlightState):
 
     def fly(self, phases: Sequence[Phase]) -> None:
         """Fly ``phases`` from the state of the vehicle, or of the set-point that it follows already."""
-        measured = self.navigation.estimate
+        measured = self.estimate
         assert measured is not None
         if self.flight is None:
             yaw = euler_of(measured.attitude)[2]
@@ -108,7 +168,7 @@ class FreeFlightState(FlightState):
     @property
     def ground(self) -> float:
         """Where the ground is taken to be (NED, m)."""
-        return 0.0 if self.home is None else self.home[2]
+        return 0.0 if self.armed_at is None else self.armed_at[2]
 
     def stop(self) -> None:
         """Rotors off. The vehicle is then in HOLD."""
