@@ -7,7 +7,7 @@ from typing import Any
 import pymavlink.dialects.v20.ardupilotmega as m
 import pytest
 from command_checks import COMMANDS, COMMANDS_OF_TEAM, REQUESTS
-from message_checks import MESSAGES, NOTHING_TO_END, OF_TEAM, Check
+from message_checks import MESSAGES, NOTHING_ON_PAYLOAD, OF_TEAM, Check
 from mission_ground import PLAN
 from service_client import HEIGHT, ServiceClient
 from vehicle_bench import HOLD, Bench, attitude_target, command
@@ -26,7 +26,7 @@ VEHICLES = {kind: Bench(free=kind == FREE).vehicle for kind in KINDS}
 SERVICES: dict[str, dict[str, dict[Any, Check]]] = {
     FREE: {"messages": dict(MESSAGES), "commands": dict(COMMANDS), "requests": dict(REQUESTS)},
     TEAM: {
-        "messages": {kind: check for kind, check in {**MESSAGES, **OF_TEAM}.items() if kind not in NOTHING_TO_END},
+        "messages": {kind: check for kind, check in {**MESSAGES, **OF_TEAM}.items() if kind not in NOTHING_ON_PAYLOAD},
         "commands": {**COMMANDS, **COMMANDS_OF_TEAM},
         "requests": dict(REQUESTS),
     },
@@ -44,7 +44,7 @@ CASES = [
     pytest.param(kind, table, entry, id=f"{name_of(entry)}-{kind}")
     for kind in KINDS for table in ("messages", "commands", "requests")
     for entry in getattr(VEHICLES[kind].dispatcher, table)
-    if not (kind == TEAM and entry in NOTHING_TO_END)
+    if not (kind == TEAM and entry in NOTHING_ON_PAYLOAD)
 ]  # fmt: skip
 
 
@@ -52,7 +52,7 @@ CASES = [
 def test_everything_that_is_handled_has_a_check(kind: str) -> None:
     for table, checks in SERVICES[kind].items():
         handled = set(getattr(VEHICLES[kind].dispatcher, table))
-        assert handled - (NOTHING_TO_END if kind == TEAM else set()) == set(checks)
+        assert handled - (NOTHING_ON_PAYLOAD if kind == TEAM else set()) == set(checks)
 
 
 @pytest.mark.parametrize(("kind", "table", "entry"), CASES)

@@ -5,6 +5,7 @@ For the checks see :mod:`message_checks`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from functools import partial
 from typing import Any
@@ -46,6 +47,24 @@ def goes_to(client: ServiceClient, north: float = 4.0) -> bool:
         return False
     client.run(5.0)
     return abs(client.place[0] - 4.0) < 0.3
+
+
+def turns(client: ServiceClient) -> bool:
+    client.take_off()
+    accepted = client.accepts(m.MAV_CMD_CONDITION_YAW, 90.0, 0, 1, 0)
+    client.run(6.0)
+    return accepted and abs(client.last("ATTITUDE").yaw - math.radians(90.0)) < 0.1
+
+
+def sets_home(client: ServiceClient) -> bool:
+    latitude, longitude, altitude = FRAME.geodetic(3.0, 0.0, 0.0)
+    home = m.MAVLink_command_int_message(
+        1, 1, m.MAV_FRAME_GLOBAL, m.MAV_CMD_DO_SET_HOME, 0, 0, 0, 0, 0, 0,
+        round(latitude * 1e7), round(longitude * 1e7), altitude,
+    )  # fmt: skip
+    client.ask(home)
+    client.ask(command(m.MAV_CMD_GET_HOME_POSITION))
+    return abs(client.last("HOME_POSITION").latitude - latitude * 1e7) < 5
 
 
 def flies_slower(client: ServiceClient) -> bool:
@@ -111,7 +130,8 @@ COMMANDS: Mapping[int, Check] = {
     m.MAV_CMD_RUN_PREARM_CHECKS: partial(says, message=command(401), text="Preflight OK"),
     m.MAV_CMD_PREFLIGHT_STORAGE: stores_parameters,
     m.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN: partial(is_refused, message=command(246, 1), text="vehicle-sim anew"),
-    m.MAV_CMD_DO_SET_HOME: partial(is_refused, message=command(179, 1), text="--mission sets it"),
+    m.MAV_CMD_DO_SET_HOME: sets_home,
+    m.MAV_CMD_CONDITION_YAW: turns,
     m.MAV_CMD_REQUEST_MESSAGE: partial(is_sent, kind="ALTITUDE", message=command(512, m.MAVLINK_MSG_ID_ALTITUDE)),
     m.MAV_CMD_SET_MESSAGE_INTERVAL: sets_interval,
     m.MAV_CMD_GET_MESSAGE_INTERVAL: partial(
@@ -121,16 +141,20 @@ COMMANDS: Mapping[int, Check] = {
 """Of a vehicle that flies by itself, by MAV_CMD."""
 
 COMMANDS_OF_TEAM: Mapping[int, Check] = {
-    number: partial(is_refused, message=command(number, *parameters))
-    for number, *parameters in (
-        (m.MAV_CMD_DO_SET_MISSION_CURRENT, 2),
-        (TAKEOFF, 0, 0, 0, NAN, NAN, NAN, NAN),
-        (m.MAV_CMD_NAV_RETURN_TO_LAUNCH,),
-        (m.MAV_CMD_DO_REPOSITION, -1, 1, 0, NAN, NAN, NAN, NAN),
-        (m.MAV_CMD_DO_CHANGE_SPEED, 1, 1.5, -1),
-        (m.MAV_CMD_MISSION_START, 0, 0),
-        (m.MAV_CMD_DO_PAUSE_CONTINUE, 0),
-    )
+    m.MAV_CMD_DO_SET_HOME: partial(is_refused, message=command(179, 1), text="--mission sets it"),
+    **{
+        number: partial(is_refused, message=command(number, *parameters))
+        for number, *parameters in (
+            (m.MAV_CMD_DO_SET_MISSION_CURRENT, 2),
+            (TAKEOFF, 0, 0, 0, NAN, NAN, NAN, NAN),
+            (m.MAV_CMD_NAV_RETURN_TO_LAUNCH,),
+            (m.MAV_CMD_DO_REPOSITION, -1, 1, 0, NAN, NAN, NAN, NAN),
+            (m.MAV_CMD_DO_CHANGE_SPEED, 1, 1.5, -1),
+            (m.MAV_CMD_CONDITION_YAW, 90.0, 0, 1, 0),
+            (m.MAV_CMD_MISSION_START, 0, 0),
+            (m.MAV_CMD_DO_PAUSE_CONTINUE, 0),
+        )
+    },
 }
 """What differs on a payload."""
 

@@ -182,7 +182,17 @@ def is_refused_a_file(client: ServiceClient) -> bool:
     return client.has("FILE_TRANSFER_PROTOCOL", message)
 
 
+def is_heard_as_a_ground(client: ServiceClient) -> bool:
+    """With NAV_DLL_ACT it is armed only while a ground station is heard."""
+    for name, value in ((b"NAV_DLL_ACT", 1), (SETTING, 5)):
+        client.ask(m.MAVLink_param_set_message(1, 1, name, px4.parameter_to_wire(value, INT32), INT32))
+    client.run(6.0)
+    client.ask(m.MAVLink_heartbeat_message(m.MAV_TYPE_GCS, m.MAV_AUTOPILOT_INVALID, 0, 0, 4, 3))
+    return client.accepts(ARM, 1)
+
+
 MESSAGES: Mapping[Any, Check] = {
+    m.MAVLink_heartbeat_message: is_heard_as_a_ground,
     m.MAVLink_set_attitude_target_message: flies_attitude,
     m.MAVLink_set_position_target_local_ned_message: partial(flies_position, setpoint=LOCAL_TARGET),
     m.MAVLink_set_position_target_global_int_message: partial(flies_position, setpoint=GLOBAL_TARGET),
@@ -259,5 +269,6 @@ OF_TEAM: Mapping[Any, Check] = {
     },
 }
 """What differs on a payload."""
-NOTHING_TO_END = frozenset([m.MAVLink_mission_ack_message])
-"""Messages that do nothing on a payload: without missions there is no transfer that MISSION_ACK could end."""
+NOTHING_ON_PAYLOAD = frozenset([m.MAVLink_mission_ack_message, m.MAVLink_heartbeat_message])
+"""Messages that do nothing on a payload: there is no transfer that MISSION_ACK could end, and any message is a ground's
+sign of life."""
