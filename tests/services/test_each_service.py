@@ -9,7 +9,7 @@ import pytest
 from command_checks import COMMANDS, COMMANDS_OF_TEAM, REQUESTS
 from message_checks import MESSAGES, NOTHING_ON_PAYLOAD, OF_TEAM, Check
 from mission_ground import PLAN
-from service_client import HEIGHT, ServiceClient
+from service_client import HEIGHT, NAN, ServiceClient
 from vehicle_bench import HOLD, Bench, attitude_target, command
 
 from gcs.config import SystemConfig
@@ -90,6 +90,7 @@ def airborne(kind: str) -> ServiceClient:
     return client
 
 
+ORBITING = px4.AUTOPILOT_COMPONENT, m.MAVLINK_MSG_ID_ORBIT_EXECUTION_STATUS
 ITEM_REACHED = px4.AUTOPILOT_COMPONENT, m.MAVLINK_MSG_ID_MISSION_ITEM_REACHED
 STREAMS = default_intervals(SystemConfig().vehicle_link.intervals, 0.02)
 LONGEST = 1.0
@@ -99,7 +100,9 @@ LONGEST = 1.0
 @pytest.mark.parametrize("key", sorted(VEHICLES[TEAM].telemetry.builders), ids=lambda key: name_of(key[1]))
 def test_client_gets_a_message_and_misses_it_when_it_is_switched_off(key: tuple[int, int]) -> None:
     component, number = key
-    client = airborne(FREE if key == ITEM_REACHED else TEAM)
+    client = airborne(FREE if key in (ITEM_REACHED, ORBITING) else TEAM)
+    if key == ORBITING:
+        client.accepts(m.MAV_CMD_DO_ORBIT, 3.0, 2.0, NAN, 0, NAN, NAN, NAN)
     system = 1 if component == px4.AUTOPILOT_COMPONENT else px4.PAYLOAD_UNIT_SYSTEM
     request = command(m.MAV_CMD_REQUEST_MESSAGE, number, system=system, component=component)
     builders = client.vehicle.telemetry.builders

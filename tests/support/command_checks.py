@@ -56,6 +56,16 @@ def turns(client: ServiceClient) -> bool:
     return accepted and abs(client.last("ATTITUDE").yaw - math.radians(90.0)) < 0.1
 
 
+def circles(client: ServiceClient) -> bool:
+    client.take_off()
+    north, east, *_ = client.place
+    latitude, longitude, altitude = FRAME.geodetic(north + 3.0, east, -HEIGHT)
+    accepted = client.accepts(m.MAV_CMD_DO_ORBIT, 3.0, 2.0, NAN, 0, latitude, longitude, altitude)
+    client.run(6.0)
+    away = math.hypot(client.place[0] - north - 3.0, client.place[1] - east)
+    return accepted and abs(away - 3.0) < 0.5 and client.speed > 1.0
+
+
 def sets_home(client: ServiceClient) -> bool:
     latitude, longitude, altitude = FRAME.geodetic(3.0, 0.0, 0.0)
     home = m.MAVLink_command_int_message(
@@ -132,6 +142,7 @@ COMMANDS: Mapping[int, Check] = {
     m.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN: partial(is_refused, message=command(246, 1), text="vehicle-sim anew"),
     m.MAV_CMD_DO_SET_HOME: sets_home,
     m.MAV_CMD_CONDITION_YAW: turns,
+    m.MAV_CMD_DO_ORBIT: circles,
     m.MAV_CMD_REQUEST_MESSAGE: partial(is_sent, kind="ALTITUDE", message=command(512, m.MAVLINK_MSG_ID_ALTITUDE)),
     m.MAV_CMD_SET_MESSAGE_INTERVAL: sets_interval,
     m.MAV_CMD_GET_MESSAGE_INTERVAL: partial(
@@ -151,6 +162,7 @@ COMMANDS_OF_TEAM: Mapping[int, Check] = {
             (m.MAV_CMD_DO_REPOSITION, -1, 1, 0, NAN, NAN, NAN, NAN),
             (m.MAV_CMD_DO_CHANGE_SPEED, 1, 1.5, -1),
             (m.MAV_CMD_CONDITION_YAW, 90.0, 0, 1, 0),
+            (m.MAV_CMD_DO_ORBIT, 3.0, 2.0, NAN, 0, NAN, NAN, NAN),
             (m.MAV_CMD_MISSION_START, 0, 0),
             (m.MAV_CMD_DO_PAUSE_CONTINUE, 0),
         )
