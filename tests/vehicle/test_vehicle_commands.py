@@ -82,7 +82,8 @@ def test_setpoint_loss_is_reported(flying: Bench) -> None:
         (command(511, 31, -1), ACCEPTED),
         (command(300), DENIED),
         (command(420, 1), UNSUPPORTED),
-        (command(34), UNSUPPORTED),
+        (command(34, 5, 1), DENIED),
+        (command(187), UNSUPPORTED),
     ],
 )
 def test_commands_are_acknowledged(bench: Bench, message: Any, result: int) -> None:
