@@ -41,15 +41,13 @@ def test_mavproxy_flies_a_vehicle_by_commands(free_swarm, tmp_path):
         while free_swarm.track(1).nearest(*TARGET) > 0.3:
             program.until("< GLOBAL_POSITION_INT {")
         program.command("pause", accepted("DO_PAUSE_CONTINUE"))
-        set_parameter(program, "RTL_RETURN_ALT", 3.0)
-        set_parameter(program, "RTL_DESCEND_ALT", 2.0)
         flown = free_swarm.track(1, began)
         program.command("long DO_SET_MODE 1 4 5", "Mode RTL")  # its mode RTL raises an error with PX4's modes
         program.until("DISARMED")
         printed = "\n".join(program.printed)
     assert "Traceback" not in printed
     track = free_swarm.track(1)
-    assert track.height.max() == pytest.approx(TARGET[2], abs=0.8)  # RTL climbs no higher than home is far
+    assert track.height.max() == pytest.approx(4.0, abs=0.2)  # RTL: near home twice NAV_ACC_RAD
     assert np.linalg.norm(flown.velocity[:, :2], axis=1).max() < 1.4
     assert np.linalg.norm(track.position[-1, :2]) < 0.3 and track.height[-1] < 0.05
     assert free_swarm.modes(1) == ["AUTO.LOITER", "AUTO.TAKEOFF", "AUTO.LOITER", "AUTO.RTL", "AUTO.LOITER"]
@@ -60,8 +58,6 @@ def test_mavproxy_loads_a_mission_file_and_the_vehicle_flies_it(free_swarm, tmp_
     (tmp_path / "plan.waypoints").write_text(PLAN.format(home, point))
     began = free_swarm.now()
     with mavproxy(free_swarm.sdk_port(2), tmp_path) as program:
-        set_parameter(program, "RTL_RETURN_ALT", 2.0)
-        set_parameter(program, "RTL_DESCEND_ALT", 2.0)
         program.command("wp load plan.waypoints", r"Loaded 4 (waypoints|mission items)")
         program.until(r"Flight plan received|Sent waypoint 3|MISSION_ACK|ACCEPTED")
         program.command("wp list", "Requesting 4 waypoints")

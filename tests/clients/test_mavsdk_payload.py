@@ -7,6 +7,7 @@ import pytest
 from mavsdk.plugins.action import ActionError, ActionResult
 from mavsdk.plugins.mission_raw import MissionItem, MissionRawError, MissionRawResult
 from mavsdk.plugins.offboard import Attitude, OffboardError, OffboardResult, PositionNedYaw
+from mavsdk.plugins.param import ParamError, ParamResult
 from mavsdk_client import Steps, first, fly, second
 
 pytestmark = pytest.mark.slow
@@ -84,6 +85,19 @@ def test_attitude_set_points_are_flown_in_offboard(team):
     assert steps.track("disarm").thrust[-1] < 1e-6
     assert steps.modes("fly") == ["OFFBOARD"] and steps.armed("fly")[-1]
     assert team.payload_moved() < 0.01
+
+
+def test_vehicle_is_read_and_its_parameters_set(team):
+    async def program(client):
+        await client.param.set_param_float("MPC_LAND_SPEED", 0.4)
+        with pytest.raises(ParamError) as refused:
+            await client.param.set_param_float("CLFT_MASS", 1.0)
+        motion = await first(client.telemetry.subscribe_position_velocity_ned())
+        return await client.param.get_param_float("MPC_LAND_SPEED"), refused.value.result, motion.position
+
+    speed, result, position = fly(team.sdk_port(3), program)
+    assert speed == pytest.approx(0.4) and result == ParamResult.READ_ONLY
+    assert (position.north_m, position.east_m, position.down_m) == pytest.approx(team.track(3).position[-1], abs=0.2)
 
 
 def test_payload_unit_is_another_system_without_an_autopilot(team):
