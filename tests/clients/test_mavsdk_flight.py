@@ -1,8 +1,11 @@
 """MAVSDK 4 flies a vehicle without a payload by its actions; what then happens is in the true motion."""
 
+import math
+
 import numpy as np
 import pytest
 from client_swarm import FRAME
+from mavsdk.plugins.action import OrbitYawBehavior
 from mavsdk_client import Steps, first, fly
 
 pytestmark = pytest.mark.slow
@@ -33,6 +36,11 @@ def flown(free_swarm):
             action.set_current_speed(0.8), client.is_at(TARGET[0], TARGET[1] + 2.5, -TARGET[2]),
         )  # fmt: skip
         await steps("hold", action.hold(), first(telemetry.subscribe_velocity_ned(), lambda v: abs(v.east_m_s) < 0.1))
+        await steps(
+            "orbit", action.do_orbit(2.0, 1.0, OrbitYawBehavior.HOLD_INITIAL_HEADING, latitude, longitude, math.nan),
+            client.is_at(TARGET[0] - 2.0, TARGET[1], -TARGET[2], 0.4), action.hold(),
+            first(telemetry.subscribe_velocity_ned(), lambda v: math.hypot(v.north_m_s, v.east_m_s) < 0.1),
+        )  # fmt: skip
         await steps("land", client.land())
         await steps("again", client.take_off(2.0))
         await action.set_return_to_launch_altitude(3.0)
@@ -69,6 +77,14 @@ def test_hold_stops_on_the_way(flown):
     track = flown.track("hold")
     assert track.velocity[0, 1] > 0.6 and abs(track.velocity[-1, 1]) < 0.4
     assert track.position[-1, 1] < TARGET[1] + 3.4  # the target of the command before was 3.77 m east
+
+
+def test_orbit_flies_about_its_centre(flown):
+    track = flown.track("orbit")
+    away = np.linalg.norm(track.position[:, :2] - TARGET[:2], axis=1)
+    beyond = np.arctan2(track.position[:, 1] - TARGET[1], track.position[:, 0] - TARGET[0])
+    assert away[beyond > math.radians(110.0)] == pytest.approx(2.0, abs=0.5)
+    assert "POSCTL.ORBIT" in flown.modes("orbit")
 
 
 def test_land_comes_down_where_it_is(flown):

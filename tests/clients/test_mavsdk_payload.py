@@ -59,7 +59,7 @@ def test_mission_is_refused_at_once_with_the_reason(team):
 def test_position_set_points_are_not_flown_which_a_text_says(team):
     async def program(client):
         await client.offboard.set_position_ned(PositionNedYaw(0.0, 0.0, -5.0, 0.0))
-        async with text_with(client, "Position set-points are ignored on a payload"):
+        async with text_with(client, "position set-points are not flown on a payload"):
             with pytest.raises(OffboardError) as refused:
                 await client.offboard.start()
         return refused.value.result

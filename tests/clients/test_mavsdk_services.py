@@ -131,7 +131,6 @@ def test_parameter_that_cannot_be_set_is_refused_with_the_reason(free_swarm, nam
         ("reboot", (), ActionResult.COMMAND_DENIED),
         ("land", (), ActionResult.COMMAND_DENIED),  # on the ground
         ("return_to_launch", (), ActionResult.COMMAND_DENIED),
-        ("do_orbit", (5.0, 1.0, 0, 47.4, 8.5, 490.0), ActionResult.UNSUPPORTED),
         ("set_actuator", (1, 0.5), ActionResult.UNSUPPORTED),
     ],
 )
