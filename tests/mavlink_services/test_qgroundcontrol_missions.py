@@ -1,18 +1,17 @@
 """What QGroundControl does with plans when it connects, and when the operator uploads one.
 
-Its states at connect (``InitialConnectStateMachine.cc``): AUTOPILOT_VERSION, modes, component information, parameters,
-then mission, fence and rally points, the last two only with their capability bits. Each plan is read by a manager of
-its own (``PlanManager.cc``), which waits for one answer at a time and repeats its request at a timeout.
+It reads mission, fence and rally points when it connects, the last two only with their capability bits. Each plan is
+read by a manager of its own (``PlanManager.cc``), which waits for one answer at a time and repeats its request at a
+timeout.
 """
 
 from __future__ import annotations
 
-from typing import Any
-
 import pymavlink.dialects.v20.ardupilotmega as m
 import pytest
+from connecting_clients import QGroundControl
 from mission_ground import ACCEPTED, MissionBench, Uploader, corners, placeless, rally_point, same, waypoint
-from vehicle_bench import Bench, command
+from vehicle_bench import Bench
 
 from gcs.mavlink.services.mission_item import PlanType
 
@@ -27,52 +26,6 @@ PLANS = {
     PlanType.FENCE: [*corners(5001, 4), waypoint(0, frame=0, command=5004, param1=12.0)],
     PlanType.RALLY: [rally_point(3)],
 }
-REQUIRED = {
-    PlanType.MISSION: 0,
-    PlanType.FENCE: m.MAV_PROTOCOL_CAPABILITY_MISSION_FENCE,
-    PlanType.RALLY: m.MAV_PROTOCOL_CAPABILITY_MISSION_RALLY,
-}
-
-
-class QGroundControl:
-    """The requests of its connect states, each answered before the next: an unanswered one would be repeated."""
-
-    def __init__(self, bench: Bench) -> None:
-        self.bench = bench
-        bench.send(m.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3))
-        bench.collect()
-
-    def draw(self, message: Any, kind: str) -> Any:
-        """Send, and return the one answer of a kind that comes at once."""
-        bench = self.bench
-        bench.collect()
-        inbox = bench.inbox[next(iter(bench.inbox))]
-        before = len(inbox)
-        bench.send(message)
-        bench.collect()
-        [answer] = [found for found in inbox[before:] if found.get_type() == kind]
-        return answer
-
-    def connect(self) -> dict[PlanType, list[Any]]:
-        """Go through the states that concern plans; return the items of each."""
-        version = self.draw(command(512, m.MAVLINK_MSG_ID_AUTOPILOT_VERSION), "AUTOPILOT_VERSION")
-        assert version.capabilities & m.MAV_PROTOCOL_CAPABILITY_MISSION_INT
-        plans = {}
-        for plan_type, capability in REQUIRED.items():
-            assert version.capabilities & capability == capability, plan_type
-            plans[plan_type] = self.read(plan_type)
-        return plans
-
-    def read(self, plan_type: PlanType) -> list[Any]:
-        found = self.draw(m.MAVLink_mission_request_list_message(1, 1, plan_type), "MISSION_COUNT")
-        assert found.mission_type == plan_type
-        items = []
-        for number in range(found.count):
-            item = self.draw(m.MAVLink_mission_request_int_message(1, 1, number, plan_type), "MISSION_ITEM_INT")
-            assert (item.seq, item.mission_type) == (number, plan_type)
-            items.append(item)
-        self.bench.send(m.MAVLink_mission_ack_message(1, 1, ACCEPTED, plan_type))
-        return items
 
 
 def test_connect_states_end_on_a_coupled_vehicle_with_empty_plans(bench: Bench) -> None:
