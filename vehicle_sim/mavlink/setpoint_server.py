@@ -6,11 +6,12 @@ from typing import Any
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.services.dispatcher import Dispatcher, Request
+from gcs.mavlink.stop_plan import read_stop_plan
 from idc_controller.rotations_float import euler_of
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.position_setpoints import read_global, read_local
 from vehicle_sim.autopilot.setpoint_stream import Setpoint
-from vehicle_sim.autopilot.setpoints import SetpointError, StopPlan, read_setpoint, read_stop_plan
+from vehicle_sim.autopilot.setpoints import SetpointError, checked_stop_plan, read_setpoint
 from vehicle_sim.mavlink.control_owner import ControlOwner
 from vehicle_sim.mavlink.geodesy import LocalFrame
 
@@ -18,7 +19,7 @@ STAMP_WRAP = 2**32 * 1e-3  # s after which stamps of 32 bits begin anew
 
 
 class SetpointServer:
-    """SET_ATTITUDE_TARGET and TRAJECTORY_REPRESENTATION_BEZIER.
+    """SET_ATTITUDE_TARGET, and stop plans in TUNNEL.
 
     ``refused`` counts those that cannot be flown or came from a ground that is not in control.
     """
@@ -33,7 +34,7 @@ class SetpointServer:
     def register(self, dispatcher: Dispatcher) -> None:
         """Take the messages of this service."""
         dispatcher.register_fields(mavlink.MAVLink_set_attitude_target_message, self._on_setpoint)
-        dispatcher.register_fields(mavlink.MAVLink_trajectory_representation_bezier_message, self._on_stop_plan)
+        dispatcher.register_fields(mavlink.MAVLink_tunnel_message, self._on_stop_plan)
 
     def _on_setpoint(self, fields: tuple[Any, ...], request: Request) -> None:
         self._take(lambda: read_setpoint(fields, self._autopilot.state.settings.setpoints), request)
@@ -53,17 +54,22 @@ class SetpointServer:
 
     def _on_stop_plan(self, fields: tuple[Any, ...], request: Request) -> None:
         now = request.now
-        if self._owner.in_control(now) != request.sender:
+        content = read_stop_plan(fields)
+        if content is None or self._owner.in_control(now) != request.sender:
             return
         try:
-            plan = read_stop_plan(fields, self._autopilot.state.settings.setpoints)
+            plan = checked_stop_plan(content, self._autopilot.state.settings.setpoints)
         except SetpointError:
             self.refused += 1
             return
-        start = plan.start - (self._clock(now) - now)
+        ahead = self._clock(now) - now
         # The ground estimates this clock from stamps of 32 bits, which may have begun anew since.
-        start += round((now - start) / STAMP_WRAP) * STAMP_WRAP
-        self._autopilot.take_stop_plan(StopPlan(start, *plan[1:]))
+        ahead += round((plan.start - ahead - now) / STAMP_WRAP) * STAMP_WRAP
+        plan = plan._replace(start=plan.start - ahead, descent=plan.descent - ahead)
+        if not self._autopilot.state.is_on_way(plan, now):
+            self.refused += 1
+        elif self._owner.is_new_plan(content.session, content.number):
+            self._autopilot.take_stop_plan(plan)
 
 
 class PositionSetpointServer(SetpointServer):

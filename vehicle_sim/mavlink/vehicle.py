@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Mapping, Set
 from types import MappingProxyType
+from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -122,6 +123,8 @@ class Vehicle:
         self._dispatcher = Dispatcher()
         # A further protocol registers its messages here.
         self._setpoints.register(self._dispatcher)
+        self._owner = None if free else owner
+        self._dispatcher.register_fields(mavlink.MAVLink_heartbeat_message, self._on_heartbeat)
         LinkServices(clock).register(self._dispatcher)
         self._missions = MissionServer(system_id, plans or CoupledPlans(), owner, self._peers, link.missions)
         self._missions.register(self._dispatcher)
@@ -176,7 +179,7 @@ class Vehicle:
         if now > self._latest:
             self._latest = now
         peer = request = None
-        is_ground = False
+        is_foreign = False
         messages = self._decoder.decode(datagram)
         for received in messages:
             system, component = received.system, received.component
@@ -188,9 +191,9 @@ class Vehicle:
                     return
                 if not peer.answered:
                     peer.hear(len(datagram), addressed=any(m.target_system in self._systems for m in messages))
-            if not is_ground and system != self.system_id:  # a companion of its own is none
-                is_ground = True
-                self.autopilot.ground_message_received(now)
+            if not is_foreign and system != self.system_id:
+                is_foreign = True
+                self.autopilot.message_received()
             if request is None or request.component != component or request.system != system:
                 request = Request((sender, system), component, peer, now)
             if received.is_for(self.system_id, px4.AUTOPILOT_COMPONENT):
@@ -206,6 +209,14 @@ class Vehicle:
             self.send_changes()
         self._missions.run(now)
         return self._peers.datagrams_to_send(self.telemetry, now)
+
+    def _on_heartbeat(self, fields: tuple[Any, ...], request: Request) -> None:
+        """Take the HEARTBEAT of a ground, on a payload of the one in control: its data link is up."""
+        _, kind, *_ = fields
+        if kind != mavlink.MAV_TYPE_GCS or request.system == self.system_id:  # a companion of its own is none
+            return
+        if self._owner is None or self._owner.is_owner(request.sender):
+            self.autopilot.ground_heartbeat_received(request.now)
 
     @property
     def listeners(self) -> Set[Address]:
