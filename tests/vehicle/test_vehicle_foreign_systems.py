@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -140,7 +141,7 @@ def test_random_messages_of_foreign_system_neither_raise_nor_change_state(flying
 
 
 def test_companion_with_the_vehicles_own_system_id_is_answered_and_is_no_ground(flying: Bench) -> None:
-    flying.send(GROUND_HEARTBEAT)
+    flying.streaming.clear()
     heard = flying.vehicle.autopilot.state.link_time
     flying.run(0.5)
     flying.send(GROUND_HEARTBEAT, STRANGER, system=1, component=191)
@@ -154,12 +155,13 @@ def test_companion_with_the_vehicles_own_system_id_is_answered_and_is_no_ground(
         (GROUND_HEARTBEAT, GROUND, 255, True),
         (GROUND_HEARTBEAT, STRANGER, 255, False),
         (GROUND_HEARTBEAT, GROUND, 254, False),
-        (mavlink.MAVLink_heartbeat_message(2, 3, 0, 0, 4, 3), GROUND, 255, False),
-        (command(512, 148), GROUND, 255, False),
+        (mavlink.MAVLink_heartbeat_message(2, 3, 0, 0, 4, 3), STRANGER, 3, False),
+        (command(512, 148), GROUND, 255, True),
+        (command(512, 148), STRANGER, 255, False),
     ],
-    ids=["in control", "another address", "another system", "a drone", "another message"],
+    ids=["in control", "another address", "another system", "a drone", "its command", "another's command"],
 )
-def test_data_link_is_kept_up_by_heartbeats_of_the_ground_in_control(
+def test_data_link_is_kept_up_by_the_ground_in_control_alone(
     flying: Bench, message: Any, sender: Any, system: int, counts: bool
 ) -> None:
     flying.run(0.1)
@@ -172,5 +174,7 @@ def test_data_link_is_kept_up_by_heartbeats_of_the_ground_in_control(
 def test_before_any_ground_is_in_control_the_heartbeat_of_each_counts() -> None:
     bench = Bench()
     bench.run(0.1)
+    bench.send(mavlink.MAVLink_heartbeat_message(2, 3, 0, 0, 4, 3), STRANGER, 3)
+    assert bench.vehicle.autopilot.state.link_time == -math.inf
     bench.send(GROUND_HEARTBEAT, STRANGER, 254)
     assert bench.vehicle.autopilot.state.link_time == bench.now

@@ -109,7 +109,7 @@ class Autopilot:
         """A message has come, which may have set a parameter."""
         self._decide_anew()
 
-    def ground_heartbeat_received(self, now: float) -> None:
+    def ground_heard(self, now: float) -> None:
         """The data link to the ground is up."""
         self.state.link_time = now
 

@@ -43,7 +43,7 @@ class FlightState:
     stop_plan: StopPlan | None = None
     """The newest of the ground in control."""
     link_time: float = -math.inf
-    """Time of the last HEARTBEAT of the ground in control, before the first of any ground (s)."""
+    """Time of the last message of the ground in control, or HEARTBEAT where that may be any ground (s)."""
     notices: list[str] = field(default_factory=list)
     """STATUSTEXTs to the operator, not sent yet."""
 

@@ -126,9 +126,10 @@ class ControlOwner:
         self._plan, self._is_handed_over = (session, number), False
         return True
 
-    def is_owner(self, sender: Sender) -> bool:
-        """Return True for the ground that is or was last in control; for every one before the first."""
-        return self._owner is None or self._owner == sender
+    @property
+    def owner(self) -> Sender | None:
+        """The ground that is in control, or was last; None before the first."""
+        return self._owner
 
     def _is_fresh(self, time: float, now: float) -> bool:
         return now - time < self._autopilot.state.setpoint_loss_time

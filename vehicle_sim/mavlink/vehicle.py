@@ -194,6 +194,8 @@ class Vehicle:
             if not is_foreign and system != self.system_id:
                 is_foreign = True
                 self.autopilot.message_received()
+                if self._owner is not None and self._owner.owner == (sender, system):
+                    self.autopilot.ground_heard(now)
             if request is None or request.component != component or request.system != system:
                 request = Request((sender, system), component, peer, now)
             if received.is_for(self.system_id, px4.AUTOPILOT_COMPONENT):
@@ -211,12 +213,12 @@ class Vehicle:
         return self._peers.datagrams_to_send(self.telemetry, now)
 
     def _on_heartbeat(self, fields: tuple[Any, ...], request: Request) -> None:
-        """Take the HEARTBEAT of a ground, on a payload of the one in control: its data link is up."""
+        """Take the HEARTBEAT of a ground: where none is in control of a vehicle on a payload, its data link is up."""
         _, kind, *_ = fields
         if kind != mavlink.MAV_TYPE_GCS or request.system == self.system_id:  # a companion of its own is none
             return
-        if self._owner is None or self._owner.is_owner(request.sender):
-            self.autopilot.ground_heartbeat_received(request.now)
+        if self._owner is None or self._owner.owner is None:
+            self.autopilot.ground_heard(request.now)
 
     @property
     def listeners(self) -> Set[Address]:

@@ -1,5 +1,7 @@
 """A free vehicle's failsafes, as PX4 has them without a remote control; ``docs/architecture.md`` mirrors the table."""
 
+import math
+
 from gcs.mavlink import px4
 from vehicle_sim.autopilot.failsafe import Failsafe, always, armed, by_cause, disarm, setpoints_lost
 from vehicle_sim.autopilot.free import parameters as names
@@ -38,6 +40,7 @@ def _data_link_lost(state: FreeFlightState, now: float) -> bool:
         state.parameters[names.LINK_LOSS_ACTION] != _NOTHING
         and not state.failsafe
         and state.mode not in (px4.MODE_LAND, px4.MODE_RETURN)
+        and state.link_time > -math.inf
         and now - state.link_time > state.parameters[px4.PARAM_LINK_LOSS]
     )
 
