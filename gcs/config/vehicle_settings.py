@@ -29,11 +29,13 @@ class VehicleFailsafeSettings(SettingsTable):
     """COM_OF_LOSS_T (s): without set-points in OFFBOARD until it brakes; ``flight.failsafe.telemetry_timeout``."""
     land_delay: float = setting(5.0, "s", "CLFT_LAND_DELAY: from that hold to the descent", ge=0.0, le=3600.0)
     link_loss: int = setting(
-        10, "s", "COM_DL_LOSS_T: without a message of any ground until a holding vehicle descends", ge=5, le=300
+        10, "s", "COM_DL_LOSS_T: without a heartbeat of the ground until a holding vehicle descends", ge=5, le=300
     )
     stop_plan_age: float = 2.0  # s; since its start in which the ground's stop plan may be begun
     # m; from the stop plan within which it is followed: farther away it does not fit the vehicle
     stop_plan_distance: float = 2.0
+    # m; from the vehicle's own way within which a stop plan begins, or it is another's: neighbours are farther apart
+    stop_plan_offset: float = 0.5
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -192,7 +194,7 @@ class VehicleLinkSettings(PeerSettings):
     """Service of a vehicle to its peers."""
 
     setpoint_streams_max: int = 16  # senders of set-points served at once
-    # s; a set-point older than the last by less was overtaken on the link; by more: its clock was set
+    # s; a set-point older than the newest by less was overtaken on the link; by more, and twice: its clock was set back
     reordering_max: float = 1.0
     intervals: StreamIntervals = field(default_factory=StreamIntervals)
     missions: MissionTransferSettings = field(default_factory=MissionTransferSettings)

@@ -33,6 +33,19 @@ class Setpoints(NamedTuple):
         return cls(np.tile([0.0, 0.0, -1.0], (number_of_uavs, 1)), np.zeros(number_of_uavs))
 
 
+class Hold(NamedTuple):
+    """Time (s) from the last set-points that all vehicles have received to their descent without others.
+
+    ``unconfirmed_max``: by how much they may be older than the newest ones; later, a loss of them is detected.
+    """
+
+    duration: float = 5.0
+    unconfirmed_max: float = 1.0
+
+
+_HOLD = Hold()
+
+
 class StepRecord(NamedTuple):
     """One control step, for the records."""
 
@@ -72,13 +85,20 @@ class ControlLoop:
         self.compute_times.shift(decision.compute_time.planner, Part.CONTROL, Part.PLANNING)
         return StepRecord(estimate, decision)
 
-    def send(self, record: StepRecord, effective: float, leaves: Array) -> None:
-        """Take over the set-points of a step in the air, which leave at ``leaves`` (N,) and act at ``effective``."""
+    def send(self, record: StepRecord, effective: float, leaves: Array, hold: Hold = _HOLD) -> None:
+        """Take over the set-points of a step in the air, which leave at ``leaves`` (N,) and act at ``effective``.
+
+        The time of descent in the stop plan goes on only with what every vehicle is known to have received. So a
+        vehicle that is cut off, and all that are later, have times that differ by a round trip of the links at most,
+        whichever plan each of them received last.
+        """
         self.compute_times.lap(Part.MONITORING)
         self.estimator.setpoints.add(effective, record.decision.u, leaves)
         self.stop_plan = stop_plan(
             self.controller.parameters, record.decision.flat, effective, record.estimate.x, self._brake
         )
+        received = self.estimator.setpoints.received_by_all(effective, hold.unconfirmed_max)
+        self.stop_plan = self.stop_plan._replace(descent=received + hold.duration)
         self._stop_plans.append(self.stop_plan)
         self.compute_times.lap(Part.STOP_PLAN)
 

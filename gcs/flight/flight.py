@@ -247,7 +247,7 @@ class Flight:
         )
         share = self._thrust_share(time, estimate)
         if in_air:
-            self.control.send(record, effective, leaves)
+            self.control.send(record, effective, leaves, self.system.team.hold)
             places = self.control.estimator.measurement_model.vehicles(time, record.decision.flat.x[0])
             contradicted = self.control.estimator.health.uav_positions_isolated
             planned_down = float(record.decision.flat.payload[0, 0, 2])

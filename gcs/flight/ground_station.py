@@ -26,7 +26,8 @@ from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec, gather
 from gcs.mavlink.id_check import SystemIdCheck
 from gcs.mavlink.layout import LAYOUTS, Packed, packed
-from gcs.mavlink.setpoints import attitude_target, stop_plan_message
+from gcs.mavlink.setpoints import attitude_target
+from gcs.mavlink.stop_plan import StopPlanContent, stop_plan_message
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.control.controller import Decision
 from idc_controller.estimation.measurements import Attitude, Position
@@ -82,6 +83,8 @@ class GroundStation:
         self._heartbeat = IntervalTimer(timing.heartbeat_interval)
         self._timesync = IntervalTimer(timing.timesync_interval)
         self._stepped = False
+        self._session = self._plan_number = 0
+        """Number of this run of the ground, and of its last stop plan."""
 
     @property
     def links(self) -> tuple[VehicleLink, ...]:
@@ -234,9 +237,14 @@ class GroundStation:
         messages: list[list[Packed]] = [[] for _ in self.links]
         # The plan before the set-point: a vehicle that gets one of the two can still stop with the others.
         if (plan := self.flight.control.stop_plan) is not None:
-            start = plan.start - self._clock.offset
+            self._plan_number += 1
+            if self._plan_number == 1:
+                self._session = round(now * 1e3) & 0xFFFFFFFF
             for link, queue, points in zip(self.links, messages, plan.control_points.tolist(), strict=True):
-                queue.append(stop_plan_message(start + link.clock.offset, plan.duration, points))
+                ahead = link.clock.offset - self._clock.offset
+                start, descent = plan.start + ahead, plan.descent + ahead
+                content = StopPlanContent(self._session, self._plan_number, start, descent, plan.duration, 0.0, points)
+                queue.append(stop_plan_message(link.system_id, content))
         if setpoints is not None:
             rows = zip(setpoints.directions.tolist(), setpoints.thrusts.tolist(), strict=True)
             for link, queue, (direction, thrust) in zip(self.links, messages, rows, strict=True):

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.flight.control_loop import Hold
 from gcs.mavlink import px4
 from gcs.mavlink.requests import Command, CommandState
 from gcs.mavlink.vehicle_link import VehicleLink
@@ -54,6 +55,12 @@ class Team:
     def land_delay(self) -> float:
         """Time after which a vehicle without set-points descends (s)."""
         return min(link.status.parameters[px4.PARAM_LAND_DELAY] for link in self.links)
+
+    @property
+    def hold(self) -> Hold:
+        """The hold without set-points, from the last ones on."""
+        loss = max(link.status.parameters[px4.PARAM_SETPOINT_LOSS] for link in self.links)
+        return Hold(loss + self.land_delay, 2.0 * loss)
 
     def reachable_are_disarmed(self, now: float, timeout: float) -> bool:
         """Return whether every vehicle with telemetry newer than ``timeout`` (s), and at least one, is disarmed."""

@@ -9,7 +9,6 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
 from gcs.mavlink.clock import RemoteClock
-from gcs.mavlink.clock_bounds import STAMP_WRAP
 from gcs.mavlink.layout import LAYOUTS, Packed
 from gcs.mavlink.settings import LinkSettings
 from idc_controller.estimation.setpoint_history import Confirmation
@@ -24,7 +23,6 @@ _NO_RATES = (0.0, 0.0, 0.0)
 
 # What goes out with every control step is packed without a message object, its fields in the order of the wire.
 _SET_ATTITUDE_TARGET = LAYOUTS[mavlink.MAVLINK_MSG_ID_SET_ATTITUDE_TARGET]
-_STOP_PLAN = LAYOUTS[mavlink.MAVLINK_MSG_ID_TRAJECTORY_REPRESENTATION_BEZIER]
 
 
 def attitude_target(
@@ -37,18 +35,6 @@ def attitude_target(
         time_boot_ms, *attitude_of_direction(direction), *_NO_RATES, share,
         system_id, px4.AUTOPILOT_COMPONENT, IGNORE_RATES,
     )  # fmt: skip
-
-
-def stop_plan_message(boot_time: float, duration: float, control_points: Sequence[Sequence[float]]) -> Packed:
-    """Return TRAJECTORY_REPRESENTATION_BEZIER from a vehicle's ``boot_time`` (s) on, to rest in ``duration`` (s).
-
-    ``control_points``: (5, 3) of its path (m, NED); heading north.
-    """
-    x, y, z = zip(*control_points, strict=True)
-    points = len(x)
-    # A clock that was set back to before its zero reads as its stamps of 32 bits of ms do.
-    time_usec = round((boot_time if boot_time >= 0.0 else boot_time + STAMP_WRAP) * 1e6)
-    return _STOP_PLAN.pack(time_usec, *x, *y, *z, *[duration] * points, *[0.0] * points, points)
 
 
 class SetpointStream:

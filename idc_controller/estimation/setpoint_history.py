@@ -85,6 +85,8 @@ class SetpointHistory:
         self._jitter = [0.0] * number_of_uavs
         self.loss = [settings.loss_min] * number_of_uavs
         """Share of the set-points to each vehicle (N,) that is lost, ``loss_min`` or more."""
+        self._confirmed_until = [-math.inf] * number_of_uavs
+        """Time at which the newest set-point that each vehicle (N,) has reported should take effect (s)."""
 
     def clear(self) -> None:
         """Discard the set-points, not the statistics of the links."""
@@ -169,6 +171,7 @@ class SetpointHistory:
                 break
         else:
             return None
+        self._confirmed_until[uav] = max(self._confirmed_until[uav], entries[flown].effective)
         changed = math.inf
         overdue = [entry for entry in entries[flown + 1 : newest + 1] if entry.effective + tolerance < until]
         for entry in overdue:
@@ -223,6 +226,14 @@ class SetpointHistory:
                 changed = min(changed, entry.starts[uav])
                 entry.starts[uav], entry.exact = start, False
         return changed
+
+    def received_by_all(self, effective: float, age_max: float) -> float:
+        """Return when the last set-points which all vehicles are known to have received take effect (s).
+
+        Between ``effective`` - ``age_max`` and ``effective`` (s); a vehicle that has reported none is left out.
+        """
+        known = [time for time in self._confirmed_until if time > -math.inf]
+        return min(max(min(known, default=effective), effective - age_max), effective)
 
     def forget(self, before: float) -> None:
         """Discard what is no longer in force at ``before`` (s)."""

@@ -47,6 +47,8 @@ class StopPlan(NamedTuple):
     duration: float
     control_points: Array
     """(N, 5, 3) (m, NED)."""
+    descent: float = math.inf
+    """Time at which all UAVs descend (s)."""
 
     def payload_positions(self, parameters: SystemParameters, elapsed: Array) -> Array:
         """Return where a level payload that hangs at rest below the UAVs is (K, 3) (m, NED), by their mean.

@@ -155,6 +155,7 @@ def test_every_vehicle_has_its_own_part_of_the_stop_plan_that_was_sent(flown):
     for _, _, _, plan, _, on_board in flown.in_air()[10::20]:
         for i, own in enumerate(on_board):
             assert own.start == pytest.approx(plan.start, abs=0.01)
+            assert own.descent == pytest.approx(plan.descent, abs=0.01)
             assert own.duration == pytest.approx(plan.duration, rel=1e-6)
             assert np.array(own.control_points) == pytest.approx(plan.control_points[i], abs=1e-5)
 
@@ -162,14 +163,14 @@ def test_every_vehicle_has_its_own_part_of_the_stop_plan_that_was_sent(flown):
 def test_each_vehicle_is_sent_one_setpoint_and_one_stop_plan_a_step(flown):
     sent = Counter()
     log = mavutil.mavlink_connection(str(flown.folder / "telemetry.tlog"))
-    while (message := log.recv_match(type=["SET_ATTITUDE_TARGET", "TRAJECTORY_REPRESENTATION_BEZIER"])) is not None:
+    while (message := log.recv_match(type=["SET_ATTITUDE_TARGET", "TUNNEL"])) is not None:
         sent[message.get_type()] += 1
     log.close()
     # From arming to disarming, and from the first step in the air on.
     period = 1.0 / flown.mission.system.rates.control
     steps = {
         "SET_ATTITUDE_TARGET": (flown.phases[Phase.ENDED] - flown.phases[Phase.ARM]) / period,
-        "TRAJECTORY_REPRESENTATION_BEZIER": (flown.phases[Phase.ENDED] - flown.phases[Phase.CLIMB]) / period,
+        "TUNNEL": (flown.phases[Phase.ENDED] - flown.phases[Phase.CLIMB]) / period,
     }
     for kind, number in steps.items():
         assert sent[kind] == pytest.approx(4 * number, rel=0.03), kind

@@ -14,7 +14,9 @@ def team(*vehicles):
     """A team of (armed, age of its telemetry at 10 s)."""
     links = [
         SimpleNamespace(
-            status=SimpleNamespace(armed=armed, parameters={px4.PARAM_LAND_DELAY: 20.0 - i}),
+            status=SimpleNamespace(
+                armed=armed, parameters={px4.PARAM_LAND_DELAY: 20.0 - i, px4.PARAM_SETPOINT_LOSS: 0.5 + 0.1 * i}
+            ),
             telemetry_received_at=10.0 - age,
         )
         for i, (armed, age) in enumerate(vehicles)
@@ -53,3 +55,7 @@ def test_reachable_vehicles_are_disarmed_if_there_is_one_and_none_is_armed(vehic
 
 def test_first_vehicle_to_descend_sets_the_land_delay():
     assert team((True, 0.0), (True, 0.0), (True, 0.0)).land_delay == 18.0
+
+
+def test_team_holds_until_the_first_lands_as_long_as_the_last_waits_for_setpoints():
+    assert team((True, 0.0), (True, 0.0), (True, 0.0)).hold == pytest.approx((18.0 + 0.7, 2.0 * 0.7))

@@ -7,11 +7,14 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from packed_messages import message_of
 
 from gcs.mavlink import px4
+from gcs.mavlink.codec import Codec
 from gcs.mavlink.layout import packed
-from gcs.mavlink.setpoints import IGNORE_RATES, SetpointStream, attitude_target, stop_plan_message
+from gcs.mavlink.setpoints import IGNORE_RATES, SetpointStream, attitude_target
 from gcs.mavlink.settings import LinkSettings
+from gcs.mavlink.stop_plan import PAYLOAD_TYPE, StopPlanContent, read_stop_plan, stop_plan_message
 from idc_controller.rotations_float import attitude_of_direction
 
 ANGLES = st.floats(-math.pi, math.pi)
@@ -31,14 +34,30 @@ def test_setpoint_is_packed_as_by_pymavlink(system, boot_time, tilt, heading, th
 
 
 @settings(deadline=None, derandomize=True)
-@given(st.floats(-1.0, 5e6), st.floats(0.0, 100.0), st.lists(POINT, min_size=5, max_size=5))
-def test_stop_plan_is_packed_as_by_pymavlink(boot_time, duration, points):
-    x, y, z = ([point[axis] for point in points] for axis in range(3))
-    start = boot_time if boot_time >= 0.0 else boot_time + 2**32 * 1e-3
-    message = mavlink.MAVLink_trajectory_representation_bezier_message(
-        round(start * 1e6), 5, x, y, z, [duration] * 5, [0.0] * 5
-    )
-    assert stop_plan_message(boot_time, duration, points) == packed(message)[0]
+@given(
+    st.integers(1, 255), st.integers(0, 2**32 - 1), st.integers(0, 2**32 - 1), st.floats(-1.0, 5e6),
+    st.floats(-10.0, 3600.0), st.floats(0.0, 100.0), st.lists(POINT, min_size=5, max_size=5),
+)  # fmt: skip
+def test_stop_plan_is_read_by_its_vehicle_as_it_was_sent(system, session, number, start, hold, duration, points):
+    plan = StopPlanContent(session, number, start, start + hold, duration, 0.5, points)
+    [on_wire] = Codec(system, 1).decode(Codec(255, 190).frame(stop_plan_message(system, plan)))
+    assert on_wire.is_for(system, px4.AUTOPILOT_COMPONENT) and not on_wire.is_for(system % 255 + 1)
+    read = read_stop_plan(on_wire.fields)
+    assert read is not None and read[:2] == (session, number)
+    assert read[2:6] == pytest.approx(plan[2:6], rel=1e-6, abs=1e-6)
+    for own, sent in zip(read.control_points, points, strict=True):
+        assert own == pytest.approx(sent, rel=1e-6, abs=1e-30)
+
+
+@pytest.mark.parametrize(
+    "changes", [{"payload_type": PAYLOAD_TYPE + 1}, {"target_system": 0}, {"payload_length": 91}, {"payload_length": 0}]
+)
+def test_other_tunnels_and_plans_for_nobody_in_particular_hold_no_plan(changes):
+    message = message_of(stop_plan_message(1, StopPlanContent(1, 1, 0.0, 5.0, 4.0, 0.0, [(0.0, 0.0, 0.0)] * 5)))
+    for name, value in changes.items():
+        setattr(message, name, value)
+    [(layout, payload)] = packed(message)
+    assert read_stop_plan(layout.fields(payload)) is None
 
 
 @pytest.mark.parametrize(("rate", "step"), [(250.0, 0.004), (100.0, 0.01), (0.0, 0.0), (None, 0.0)])

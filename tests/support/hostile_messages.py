@@ -6,7 +6,8 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 from packed_messages import message_of
 
 from gcs.mavlink import px4
-from gcs.mavlink.setpoints import attitude_target, stop_plan_message
+from gcs.mavlink.setpoints import attitude_target
+from gcs.mavlink.stop_plan import StopPlanContent, stop_plan_message
 
 NAN, HUGE = math.nan, 3e38
 
@@ -48,7 +49,10 @@ def hostile_to_vehicle(i):
     for q, mask, thrust in (([NAN] * 4, 7, 0.5), ([HUGE] * 4, 7, HUGE), ([1, 0, 0, 0], 0, NAN), ([0] * 4, 255, -1)):
         messages.append(m.MAVLink_set_attitude_target_message(0, i, 1, mask, q, HUGE, NAN, -HUGE, thrust))
     for points, duration in (([[0, 0, 0]] * 5, 1.0), ([[HUGE] * 3] * 5, HUGE), ([[NAN] * 3] * 5, NAN)):
-        messages += [message_of(stop_plan_message(start, duration, points)) for start in (0.0, 10.0, 20.0, 30.0)]
+        messages += [
+            message_of(stop_plan_message(i, StopPlanContent(1, number, start, descent, duration, 0.0, points)))
+            for number, start in ((1, 0.0), (2, 10.0), (2**32 - 1, 20.0), (4, -30.0)) for descent in (15.0, 1e9, -1e9)
+        ]  # fmt: skip
     messages += [
         m.MAVLink_set_position_target_local_ned_message(0, i, 1, 1, 0, *[HUGE] * 11),
         m.MAVLink_set_actuator_control_target_message(0, 0, i, 1, [NAN] * 8),

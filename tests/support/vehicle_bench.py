@@ -33,6 +33,7 @@ def command(number: int, *parameters: float, system: int = 1, component: int = 1
 
 OFFBOARD = command(176, 1, px4.MainMode.OFFBOARD)
 HOLD = command(176, 1, px4.MainMode.AUTO, px4.AutoMode.LOITER)
+LAND = command(176, 1, px4.MainMode.AUTO, px4.AutoMode.LAND)
 ARM, DISARM = command(400, 1), command(400, 0)
 
 

@@ -43,7 +43,7 @@ class Flight:
             now = self.body.now
             if self.ground_is_there and self.body.tick % 25 == 0:
                 self.pilot.follow(self.target, now)
-                self.pilot.ground_message_received(now)
+                self.pilot.ground_heard(now)
             if self.body.tick % ONBOARD_EVERY == 0:
                 self.body.command = step_alone(self.pilot, self.body.measure(), now)
             self.body.advance()

@@ -117,18 +117,76 @@ def test_setpoints_of_the_ground_in_control_alone_are_flown(owner):
 
 
 @pytest.mark.parametrize(
-    ("stamp", "now", "flown"),
-    [(5100, 10.2, True), (5099, 10.2, False), (4101, 10.2, False), (4100, 10.2, True), (5099, 10.61, True)],
-    ids=["same stamp", "overtaken", "just within the window", "clock was set", "after a loss"],
-)
-def test_overtaken_setpoint_is_dropped(owner, stamp, now, flown):
+    ("stamp", "now"),
+    [
+        (5100, 10.21), (5099, 10.2), (4101, 10.2), (5099, 10.61),
+        (5100, 10.61), (5000, 10.61), (4100, 10.2), (5100, 30.0),
+    ],
+    ids=[
+        "repeat", "overtaken", "just within the window", "overtaken, after a loss", "repeat after a loss",
+        "earlier repeat after a loss", "a single older one", "repeat much later",
+    ],
+)  # fmt: skip
+def test_overtaken_setpoint_and_repeat_are_dropped(owner, stamp, now):
     autopilot = controlled(owner)
     owner.take(setpoint(stamp), GROUND, now)
-    assert bool(autopilot.flown) is flown
-    # One that is dropped does not prolong control.
-    assert (owner.in_control(10.55 if now < 10.5 else 11.0) is not None) and (
-        owner.in_control(10.65) is not None
-    ) is flown
+    assert autopilot.flown == []
+    assert owner.in_control(10.55) == GROUND and owner.in_control(10.65) is None  # nor do they prolong control
+
+
+@pytest.mark.parametrize("late", [1.05, 1.2, 2.0, 4.0])
+def test_repeats_of_a_whole_stream_are_dropped_also_after_silence(owner, late):
+    autopilot, sent = controlled(owner), [(11.0 + 0.02 * k, 6000 + 20 * k) for k in range(100)]
+    owner.take(setpoint(5900), GROUND, 10.98)
+    arrivals = sorted([*((time, stamp) for time, stamp in sent), *((time + late, stamp) for time, stamp in sent)])
+    for time, stamp in arrivals:
+        owner.take(setpoint(stamp), GROUND, time)
+    assert [stamp for stamp, _ in autopilot.flown] == [5900, *(stamp for _, stamp in sent)]
+
+
+@pytest.mark.parametrize(
+    ("stamps", "flown"),
+    [
+        ([4000, 4020, 4040], [4020, 4040]), ([4000, 3980, 4000], []), ([4000, 4000, 4020, 4020], [4020, 4020]),
+        ([4000, 5120, 4020, 5140], [5120, 5140]), ([4000, 5000, 4020, 4040], [4040]), ([4500, 4520, 4540], []),
+    ],
+    ids=["twice", "falling", "repeated", "between newer ones", "a repeat between", "overtaken"],
+)  # fmt: skip
+def test_clock_is_set_back_by_two_new_setpoints_in_a_row(owner, stamps, flown):
+    autopilot = controlled(owner)
+    for k, stamp in enumerate(stamps):
+        owner.take(setpoint(stamp), GROUND, 10.2 + 0.02 * k)
+    assert [stamp for stamp, _ in autopilot.flown] == flown
+
+
+def test_copy_of_the_newest_that_comes_with_it_counts(owner):
+    autopilot = controlled(owner)
+    owner.take(setpoint(5100), GROUND, 10.15)
+    assert autopilot.flown == [(5100, 10.15)]
+
+
+def test_setpoints_without_stamps_are_flown_as_they_come(owner):
+    for time in (10.0, 10.1):
+        owner.take(setpoint(0), GROUND, time)
+    assert owner.enter_offboard(GROUND, 10.1) == ACCEPTED
+    owner.take(setpoint(0), GROUND, 10.2)
+    assert owner._autopilot.flown == [(0, 10.2)]
+
+
+def test_setpoints_of_the_ground_in_control_are_remembered_when_others_come(owner):
+    autopilot = controlled(owner)
+    owner.take(setpoint(1), STRANGER, 12.0)
+    owner.take(setpoint(5100), GROUND, 12.1)
+    assert autopilot.flown == []
+
+
+def test_stop_plans_rise_in_number_and_another_session_begins_with_offboard(owner):
+    controlled(owner)
+    assert [owner.is_new_plan(3, number) for number in (1, 1, 3, 2, 4)] == [True, False, True, False, True]
+    assert not owner.is_new_plan(4, 9)
+    assert owner.enter_offboard(GROUND, 10.2) == ACCEPTED
+    assert not owner.is_new_plan(3, 4)
+    assert owner.is_new_plan(4, 1) and not owner.is_new_plan(3, 5)
 
 
 def test_stamps_go_on_where_they_wrap_round(owner):

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
 import numpy as np
 import pymavlink.dialects.v20.common as mavlink
 import pytest
@@ -23,6 +26,8 @@ from vehicle_bench import (
 from gcs.config.vehicle_settings import VehicleFailsafeSettings, VehicleLinkSettings
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
+
+GROUND_HEARTBEAT = mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, 8, 0, 0, 4, 3)
 
 
 def test_controlled_vehicle_refuses_commands_of_foreign_systems(flying: Bench) -> None:
@@ -175,11 +180,40 @@ def test_random_messages_of_foreign_system_neither_raise_nor_change_state(flying
 
 
 def test_companion_with_the_vehicles_own_system_id_is_answered_and_is_no_ground(flying: Bench) -> None:
+    flying.streaming.clear()
     heard = flying.vehicle.autopilot.state.link_time
     flying.run(0.5)
-    heartbeat = mavlink.MAVLink_heartbeat_message(18, 8, 0, 0, 4, 3)
-    flying.send(heartbeat, STRANGER, system=1, component=191)
-    assert flying.vehicle.autopilot.state.link_time <= heard + 0.5 < flying.now
+    flying.send(GROUND_HEARTBEAT, STRANGER, system=1, component=191)
     assert flying.request(command(512, 148), STRANGER, system=1, component=191)
-    flying.send(heartbeat, STRANGER, system=254, component=190)
-    assert flying.vehicle.autopilot.state.link_time == flying.now
+    assert flying.vehicle.autopilot.state.link_time == heard < flying.now
+
+
+@pytest.mark.parametrize(
+    ("message", "sender", "system", "counts"),
+    [
+        (GROUND_HEARTBEAT, GROUND, 255, True),
+        (GROUND_HEARTBEAT, STRANGER, 255, False),
+        (GROUND_HEARTBEAT, GROUND, 254, False),
+        (mavlink.MAVLink_heartbeat_message(2, 3, 0, 0, 4, 3), STRANGER, 3, False),
+        (command(512, 148), GROUND, 255, True),
+        (command(512, 148), STRANGER, 255, False),
+    ],
+    ids=["in control", "another address", "another system", "a drone", "its command", "another's command"],
+)
+def test_data_link_is_kept_up_by_the_ground_in_control_alone(
+    flying: Bench, message: Any, sender: Any, system: int, counts: bool
+) -> None:
+    flying.run(0.1)
+    flying.streaming.clear()
+    flying.run(1.0)
+    flying.send(message, sender, system)
+    assert (flying.vehicle.autopilot.state.link_time == flying.now) is counts
+
+
+def test_before_any_ground_is_in_control_the_heartbeat_of_each_counts() -> None:
+    bench = Bench()
+    bench.run(0.1)
+    bench.send(mavlink.MAVLink_heartbeat_message(2, 3, 0, 0, 4, 3), STRANGER, 3)
+    assert bench.vehicle.autopilot.state.link_time == -math.inf
+    bench.send(GROUND_HEARTBEAT, STRANGER, 254)
+    assert bench.vehicle.autopilot.state.link_time == bench.now

@@ -13,13 +13,15 @@ from vehicle_bench import (
     GROUND,
     HOLD,
     HOVER,
+    LAND,
+    OFFBOARD,
     STRANGER,
     Bench,
     attitude_target,
 )
 
 from gcs.mavlink import px4
-from gcs.mavlink.setpoints import stop_plan_message
+from gcs.mavlink.stop_plan import StopPlanContent, stop_plan_message
 
 
 @pytest.mark.parametrize(
@@ -77,19 +79,20 @@ def test_reordered_setpoints_are_dropped_but_not_after_clock_step(flying: Bench)
     assert thrust_after(5000, 0.2) == pytest.approx(0.2)
     assert thrust_after(4950, 0.3) == pytest.approx(0.2)
     assert thrust_after(5000, 0.25) == pytest.approx(0.25)
-    assert thrust_after(10, 0.35) == pytest.approx(0.35)
+    assert thrust_after(10, 0.35) == pytest.approx(0.25)
+    assert thrust_after(30, 0.35) == pytest.approx(0.35)
 
 
 # Stop plans
 
 
-def stop_plan(flying: Bench, start: float, x: float = 0.0, duration: float = 4.0, **changes: Any) -> Any:
+def stop_plan(
+    flying: Bench, start: float, x: float = 0.0, number: int = 1, system: int = 1, hold: float = 60.0, **changes: Any
+) -> Any:
     here = flying.body.position
     points = [(here[0] + x * k / 4, here[1], here[2]) for k in (0, 1, 4, 4, 4)]
-    message = message_of(stop_plan_message(start, duration, points))
-    for name, value in changes.items():
-        setattr(message, name, value)
-    return message
+    plan = StopPlanContent(7, number, start, start + hold, 4.0, 0.0, points)._replace(**changes)
+    return message_of(stop_plan_message(system, plan))
 
 
 @pytest.mark.parametrize("wrapped", [0.0, 2**32 * 1e-3])
@@ -106,12 +109,15 @@ def test_vehicle_follows_last_stop_plan_without_setpoints(flying: Bench, wrapped
 @pytest.mark.parametrize(
     ("late", "changes"),
     [
-        (0.0, {"valid_points": 4}),
-        (0.0, {"pos_x": [math.nan] * 5}),
-        (0.0, {"delta": [0.0] * 5}),
-        (0.0, {"delta": [math.inf] * 5}),
-        (0.0, {"pos_yaw": [math.nan] * 5}),
-        (0.0, {"pos_y": [50.0] * 5}),
+        (0.0, {"control_points": [(math.nan, 0.0, 0.0)] * 5}),
+        (0.0, {"duration": 0.0}),
+        (0.0, {"duration": math.inf}),
+        (0.0, {"yaw": math.nan}),
+        (0.0, {"control_points": [(0.0, 50.0, 0.0)] * 5}),
+        (0.0, {"hold": 4100.0}),
+        (0.0, {"hold": -4100.0}),
+        (0.0, {"system": 2}),
+        (0.0, {"system": 0}),
         (3.0, {}),
         (-9.0, {}),
     ],
@@ -127,7 +133,7 @@ def test_inconsistent_or_missing_stop_plan_is_not_followed(flying: Bench, late: 
 
 @pytest.mark.parametrize("duration", [0.05, 0.9, 4.0])
 def test_stop_plan_of_any_duration_is_taken(flying: Bench, duration: float) -> None:
-    flying.send(message_of(stop_plan_message(flying.now, duration, [(0.0, 0.0, -1.0)] * 5)))
+    flying.send(stop_plan(flying, flying.now, duration=duration))
     taken = flying.vehicle.autopilot.state.stop_plan
     assert taken is not None and taken.duration == pytest.approx(duration)
 
@@ -149,3 +155,57 @@ def test_repeated_hold_command_continues_stop_plan(flying: Bench) -> None:
         flying.run(1.0)
         assert flying.result(HOLD) == ACCEPTED
     assert flying.body.position[0] - x == pytest.approx(3.0, abs=0.3)
+
+
+@pytest.mark.parametrize(("aside", "taken"), [(0.45, True), (0.55, False)])
+@pytest.mark.parametrize("late", [-0.1, 0.0, 0.3])
+def test_plan_that_does_not_begin_on_the_vehicles_way_is_refused(
+    flying: Bench, aside: float, taken: bool, late: float
+) -> None:
+    refused = flying.vehicle.refused_setpoints
+    x, y, z = flying.body.position
+    z -= min(late, 0.0) * flying.body.velocity[2]
+    flying.send(stop_plan(flying, flying.now - late, control_points=[(x, y + aside, z)] * 5))
+    assert (flying.vehicle.autopilot.state.stop_plan is not None) is taken
+    assert flying.vehicle.refused_setpoints - refused == (not taken)
+
+
+def test_plan_with_a_higher_number_of_the_same_session_alone_is_taken(flying: Bench) -> None:
+    def taken(number: int, session: int = 7) -> bool:
+        before = flying.vehicle.autopilot.state.stop_plan
+        flying.send(stop_plan(flying, flying.now, number=number, session=session))
+        return flying.vehicle.autopilot.state.stop_plan is not before
+
+    assert taken(5)
+    assert not taken(5) and not taken(4)
+    assert taken(6)
+    assert not taken(9, session=8)  # a ground started anew has to ask for control first
+    assert flying.result(OFFBOARD) == ACCEPTED
+    assert not taken(6) and not taken(2)
+    assert taken(1, session=8)
+    assert not taken(7) and taken(2, session=8)
+
+
+@pytest.mark.parametrize("order", [(), (HOLD,), (HOLD, LAND), (LAND,), (LAND, HOLD)])
+def test_common_descent_is_neither_put_off_nor_brought_forward(flying: Bench, order: Any) -> None:
+    start = flying.now
+    flying.send(stop_plan(flying, start, hold=3.0))
+    flying.streaming.clear()
+    flying.run(1.0)
+    for message in order:
+        assert flying.result(message) == ACCEPTED
+        flying.run(0.3)
+    hold = flying.vehicle.autopilot.state.hold
+    assert hold is not None and hold.plan.descent_start == pytest.approx(start + 3.0, abs=1e-5)
+    flying.run(2.5)
+    assert flying.vehicle.autopilot.mode == px4.MODE_LAND and flying.result(HOLD) == ACCEPTED
+    assert flying.vehicle.autopilot.mode == px4.MODE_LAND and hold.plan.descent_start < flying.now
+
+
+def test_descent_of_its_own_is_put_off_by_hold(flying: Bench) -> None:
+    flying.streaming.clear()
+    flying.run(1.0)
+    hold = flying.vehicle.autopilot.state.hold
+    assert hold is not None and hold.plan.descent_start == pytest.approx(flying.now + 4.5, abs=0.1)
+    assert flying.result(HOLD) == ACCEPTED
+    assert hold.plan.descent_start == math.inf

@@ -105,10 +105,13 @@ class Autopilot:
 
     # What the ground commands
 
-    def ground_message_received(self, now: float) -> None:
-        """A message of any ground has come: the data link is up. It may have set a parameter."""
-        self.state.link_time = now
+    def message_received(self) -> None:
+        """A message has come, which may have set a parameter."""
         self._decide_anew()
+
+    def ground_heard(self, now: float) -> None:
+        """The data link to the ground is up."""
+        self.state.link_time = now
 
     def arm(self, now: float, force: bool = False) -> Answer:
         """Arm, unless something is wrong; ``force`` skips the checks except that of the sensors."""

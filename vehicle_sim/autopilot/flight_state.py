@@ -10,7 +10,7 @@ from gcs.mavlink.services.parameter_table import ParameterTable
 from idc_controller.rotations_float import Vector, euler_of
 from vehicle_sim.autopilot.actuation import Actuation
 from vehicle_sim.autopilot.airframe import Airframe
-from vehicle_sim.autopilot.hold_control import HoldController, HoldPlan
+from vehicle_sim.autopilot.hold_control import HoldController, HoldPlan, on_bezier_curve
 from vehicle_sim.autopilot.land_detector import LandDetector
 from vehicle_sim.autopilot.navigation import Navigation
 from vehicle_sim.autopilot.setpoint_stream import SetpointStream
@@ -62,7 +62,7 @@ class FlightState:
     stop_plan: StopPlan | None = None
     """The newest of the ground in control."""
     link_time: float = -math.inf
-    """Time of the last message of any ground (s), of a free vehicle of the last HEARTBEAT of one."""
+    """Time of the last message of the ground in control, or HEARTBEAT where that may be any ground (s)."""
     specific_force: Vector | None = None
     """Measured last, in the body frame (m/s2), within the accelerometer's range; None: it is not measured."""
     notices: list[str] = field(default_factory=list)
@@ -71,9 +71,9 @@ class FlightState:
     @property
     def flown_mode(self) -> int:
         """The custom mode that is flown, which in a failsafe is not the one that was commanded."""
-        if not self.failsafe:
-            return self.mode
-        return px4.MODE_LAND if self.is_descending else px4.MODE_HOLD
+        if self.is_descending:
+            return px4.MODE_LAND
+        return px4.MODE_HOLD if self.failsafe else self.mode
 
     def has_position(self, now: float) -> bool:
         """Return True if usable samples come, and the position is measured."""
@@ -122,13 +122,19 @@ class FlightState:
         return sinks and self.land.touching
 
     def begin_hold(self, now: float, descent_start: float) -> None:
-        """Brake and hold by the ground's stop plan, or by one of its own; descend at ``descent_start`` (s)."""
+        """Brake and hold by the ground's stop plan, or by one of its own.
+
+        Descend when the ground's plan has all vehicles descend; without one at ``descent_start`` (s).
+        """
         measured = self.navigation.estimate
         if measured is None:
             return
         settings = self.settings.hold
-        descent = descent_start, self.parameters[px4.PARAM_LAND_SPEED], settings.descent_ramp
-        plan = self._plan_of_ground(measured, now, descent) or HoldPlan.to_rest(
+        sent = self._recent_stop_plan(now)
+        if sent is not None:
+            descent_start = max(sent.descent, now)
+        descent = descent_start, self.parameters[px4.PARAM_LAND_SPEED], settings.descent_ramp, sent is not None
+        plan = self._plan_of_ground(sent, measured, now, descent) or HoldPlan.to_rest(
             now, measured.position, measured.velocity, euler_of(measured.attitude)[2], settings.braking, *descent
         )
         thrust, weight = self.actuation.thrust, self.airframe.mass * self.airframe.g
@@ -138,10 +144,10 @@ class FlightState:
         self.hold = HoldController(plan, hover, weight, self.airframe.g, settings)
 
     def begin_descent(self, now: float) -> None:
-        """Descend from where it is."""
+        """Descend from where it is, or when the other vehicles do, where that is known."""
         if self.hold is None:
             self.begin_hold(now, descent_start=now)
-        elif not self.is_descending:
+        elif not (self.is_descending or self.hold.plan.is_common):
             self.hold.plan = replace(self.hold.plan, descent_start=now)
         self.mode = px4.MODE_LAND
         self.failsafe = False
@@ -157,12 +163,29 @@ class FlightState:
         self.mode = px4.MODE_HOLD
         self.land.start()
 
+    def is_on_way(self, plan: StopPlan, now: float) -> bool:
+        """Return True if a stop plan begins where the vehicle will be then, or leads to where it is."""
+        measured = self.navigation.estimate
+        if measured is None:
+            return False
+        time = max(now, plan.start)
+        x, y, z = (r + (time - now) * v for r, v in zip(measured.position, measured.velocity, strict=True))
+        share = min((time - plan.start) / plan.duration, 1.0)
+        planned = on_bezier_curve([*zip(*plan.control_points, strict=True)], share) if share else plan.control_points[0]
+        return math.dist(planned, (x, y, z)) <= self.settings.failsafe.stop_plan_offset
+
+    def _recent_stop_plan(self, now: float) -> StopPlan | None:
+        sent = self.stop_plan
+        if sent is None or not -self.setpoint_loss_time <= now - sent.start <= self.settings.failsafe.stop_plan_age:
+            return None
+        return sent
+
     def _plan_of_ground(
-        self, measured: Measurement, now: float, descent: tuple[float, float, float]
+        self, sent: StopPlan | None, measured: Measurement, now: float, descent: tuple[float, float, float, bool]
     ) -> HoldPlan | None:
-        """The ground's stop plan with a ``descent`` (start, speed, ramp), if it is recent and near."""
-        sent, limits = self.stop_plan, self.settings.failsafe
-        if sent is None or not -self.setpoint_loss_time <= now - sent.start <= limits.stop_plan_age:
+        """The ground's stop plan with a ``descent`` (start, speed, ramp, whether of all), if it is near."""
+        if sent is None:
             return None
         plan = HoldPlan(sent.start, sent.duration, sent.control_points, sent.yaw, *descent)
-        return plan if math.dist(plan.at(now).position, measured.position) <= limits.stop_plan_distance else None
+        near = self.settings.failsafe.stop_plan_distance
+        return plan if math.dist(plan.at(now).position, measured.position) <= near else None

@@ -6,10 +6,11 @@ without one plans from its state at the moment of the loss.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from operator import mul
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
@@ -44,10 +45,12 @@ class HoldPlan:
     descent_start: float = math.inf
     descent_speed: float = HoldSettings.land_speed
     descent_ramp: float = HoldSettings.descent_ramp
+    is_common: bool = False
+    """All vehicles descend at that time: no command puts it off, or brings it forward."""
 
     @classmethod
     def to_rest(
-        cls, start: float, position: Vector, velocity: Vector, yaw: float, braking: BrakingSettings, *descent: float
+        cls, start: float, position: Vector, velocity: Vector, yaw: float, braking: BrakingSettings, *descent: Any
     ) -> Self:
         """Return a plan from a state to rest along the horizontal velocity, as 1 - 3 s^2 + 2 s^3 of it.
 
@@ -65,7 +68,7 @@ class HoldPlan:
         """The planned state at a time (s)."""
         t = min(max(now - self.start, 0.0), self.duration)
         share = t / self.duration
-        (x, y, z), (v_x, v_y, v_z), (a_x, a_y, a_z) = (_on_bezier_curve(points, share) for points in self._curves)
+        (x, y, z), (v_x, v_y, v_z), (a_x, a_y, a_z) = (on_bezier_curve(points, share) for points in self._curves)
         descending = now - self.descent_start
         if descending > 0.0:
             rate = self.descent_speed / self.descent_ramp
@@ -96,7 +99,7 @@ class HoldPlan:
         return now - self.descent_start > self.descent_ramp
 
 
-def _on_bezier_curve(axes: list[list[float]], share: float) -> list[float]:
+def on_bezier_curve(axes: Sequence[Sequence[float]], share: float) -> list[float]:
     """Return the point after a ``share`` of the time of a curve with the control points of ``axes``, by Bernstein."""
     n = len(axes[0]) - 1
     rest = 1.0 - share

@@ -27,18 +27,23 @@ def enter_offboard(state: FlightState, setpoint: Setpoint, received: float, now:
     state.mode = px4.MODE_OFFBOARD
     state.failsafe = False
     state.hold = None
+    state.stop_plan = None
     state.setpoints.clear()
     state.setpoints.add(setpoint, received)
     return ACCEPTED
 
 
 def _hold(state: FlightState, custom_mode: int, now: float) -> Answer:
-    """Commanded again, or while it brakes in a failsafe, it goes on with its plan: its neighbours do."""
-    keeps = state.hold is not None and not state.is_descending
+    """Commanded again, or while it brakes in a failsafe, it goes on with its plan: its neighbours do.
+
+    A descent of all vehicles is not put off: the ground may be lost before it commands another.
+    """
+    keeps = state.hold is not None and (state.hold.plan.is_common or not state.is_descending)
     state.mode = px4.MODE_HOLD
     state.failsafe = False
     if keeps and state.hold is not None:
-        state.hold.plan = replace(state.hold.plan, descent_start=math.inf)
+        if not state.hold.plan.is_common:
+            state.hold.plan = replace(state.hold.plan, descent_start=math.inf)
     else:
         state.hold = None
         if state.armed and state.is_up:

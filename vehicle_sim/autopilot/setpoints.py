@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.config.vehicle_settings import SetpointSettings
+from gcs.mavlink.stop_plan import StopPlanContent
 from idc_controller.rotations_float import Quaternion, Vector
 from vehicle_sim.world.errors import SimulationError
 
@@ -20,11 +21,7 @@ _IGNORE_ATTITUDE = mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE
 _KNOWN_BITS = sum(_IGNORE_RATE) | _IGNORE_THRUST | _IGNORE_ATTITUDE
 
 THRUST_TOLERANCE = 1e-4
-
-STOP_POINTS = 5  # control points of a quartic
-# Where the fields of a plan are, five numbers each behind the stamp; of duration and yaw the first counts.
-_X, _Y, _Z = (slice(1 + k * STOP_POINTS, 1 + (k + 1) * STOP_POINTS) for k in range(3))
-_DURATION, _YAW = 1 + 3 * STOP_POINTS, 1 + 4 * STOP_POINTS
+HOLD_MAX = 4000.0  # s; from a stop to the descent: beyond the largest CLFT_LAND_DELAY
 
 
 class SetpointError(SimulationError):
@@ -84,30 +81,26 @@ def read_setpoint(fields: tuple[Any, ...], limits: SetpointSettings) -> Attitude
 class StopPlan(NamedTuple):
     """The stop to fly if no set-point follows; see :class:`~vehicle_sim.autopilot.hold_control.HoldPlan`.
 
-    ``start`` in the vehicle's boot time (s), ``duration`` in s, five ``control_points`` in NED (m), ``yaw`` in rad.
+    ``start`` of the stop and ``descent`` of all vehicles in the vehicle's boot time (s), ``duration`` in s, five
+    ``control_points`` in NED (m), ``yaw`` in rad.
     """
 
     start: float
+    descent: float
     duration: float
     control_points: tuple[Vector, ...]
     yaw: float
 
 
-def read_stop_plan(fields: tuple[Any, ...], limits: SetpointSettings) -> StopPlan:
-    """Return the plan in the ``fields`` of a TRAJECTORY_REPRESENTATION_BEZIER of one segment, in the order of the wire.
-
-    Raises :class:`SetpointError`.
-    """
-    time_usec, valid_points = fields[0], fields[-1]
-    if valid_points != STOP_POINTS:
-        raise SetpointError(f"a stop plan has {STOP_POINTS} control points, not {valid_points}")
-    x, y, z = fields[_X], fields[_Y], fields[_Z]
-    if not math.isfinite(sum(x) + sum(y) + sum(z)):
+def checked_stop_plan(content: StopPlanContent, limits: SetpointSettings) -> StopPlan:
+    """Return the plan that a message holds. Raises :class:`SetpointError`."""
+    _, _, start, descent, duration, yaw, points = content
+    if not math.isfinite(sum(map(sum, points))):
         raise SetpointError("a control point is not finite")
-    points = tuple(zip(x, y, z, strict=True))
-    duration, yaw = fields[_DURATION], fields[_YAW]
     if not 0.0 < duration <= limits.stop_duration_max:
-        raise SetpointError(f"delta {duration} is outside 0 .. {limits.stop_duration_max} s")
+        raise SetpointError(f"duration {duration} is outside 0 .. {limits.stop_duration_max} s")
+    if not abs(descent - start) <= HOLD_MAX:
+        raise SetpointError(f"the descent begins {descent - start} s after the stop, limit {HOLD_MAX} s")
     if not math.isfinite(yaw):
-        raise SetpointError("pos_yaw is not finite")
-    return StopPlan(time_usec * 1e-6, duration, points, yaw)
+        raise SetpointError("yaw is not finite")
+    return StopPlan(start, descent, duration, tuple((x, y, z) for x, y, z in points), yaw)

@@ -1,7 +1,7 @@
 """Control of a vehicle: the ground whose set-points fly it commands it, and while they come no other."""
 
 import math
-from collections import Counter
+from collections import Counter, deque
 
 from gcs.config.vehicle_settings import VehicleLinkSettings
 from gcs.mavlink.services.aircraft import Sender
@@ -9,15 +9,45 @@ from gcs.mavlink.services.answer import Answer, rejected_for_now
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.setpoint_stream import Setpoint
 
+_KEPT = 500
+"""Set-points that a stream remembers, to tell repeats: of 10 s at 50 Hz."""
+_COPIES = 0.1
+"""Time (s) in which copies that are sent at once arrive."""
+_HALF_WRAP = 2**31  # ms
+
 
 class _Stream:
-    """The last set-point of one sender."""
+    """The last set-point of one sender, and those ``seen``."""
 
-    __slots__ = ("last", "time")
+    __slots__ = ("last", "older", "seen", "time")
 
     def __init__(self, setpoint: Setpoint, now: float) -> None:
         self.last = setpoint
         self.time = now
+        self.seen = deque((setpoint,), _KEPT)
+        self.older: Setpoint | None = None
+
+    def is_next(self, setpoint: Setpoint, now: float, reordering_max: float) -> bool:
+        """Return whether a set-point is to be used: it is newer than all before, or the sender's clock was set back.
+
+        That is taken from two in a row which have not been seen before, older by ``reordering_max`` (ms) or more: on a
+        link that repeats, or delays, single ones come so late. Without stamps (0) the order is that of arrival. Copies
+        of the newest, which a ground sends on a link that loses, count while they may have been sent with it.
+        """
+        stamp, before, self.older = setpoint.time_boot_ms, self.older, None
+        late = (self.last.time_boot_ms - stamp) & 0xFFFFFFFF
+        if late >= _HALF_WRAP or stamp == self.last.time_boot_ms == 0:
+            is_next = True
+        elif setpoint in self.seen:
+            self.older = before if setpoint == before else None
+            return setpoint == self.last and now - self.time < _COPIES
+        elif 0 < late < reordering_max:
+            is_next = False
+        else:
+            is_next = late == 0 or (before is not None and 0 < (stamp - before.time_boot_ms) & 0xFFFFFFFF < _HALF_WRAP)
+            self.older = None if is_next else setpoint
+        self.seen.append(setpoint)
+        return is_next
 
 
 class ControlOwner:
@@ -34,6 +64,9 @@ class ControlOwner:
         self._refused: dict[Sender, tuple[str, float]] = {}
         """Why a sender's last set-point was refused, and when (s)."""
         self._owner: Sender | None = None
+        self._plan = 0, 0
+        """Session and number of the last stop plan."""
+        self._is_handed_over = False
 
     def in_control(self, now: float) -> Sender | None:
         """Return the ground whose set-points fly the vehicle, None if there is none."""
@@ -54,7 +87,7 @@ class ControlOwner:
         return owner is not None and owner[0] == sender[0] and self.is_stranger(sender, now)
 
     def take(self, setpoint: Setpoint, sender: Sender, now: float) -> None:
-        """Take a valid set-point, unless another ground is in control. One overtaken by a later one is dropped."""
+        """Take a valid set-point, unless another ground is in control. Repeats and overtaken ones are dropped."""
         stream = self._streams.get(sender)
         if stream is None:
             self._forget_silent(now)
@@ -62,8 +95,7 @@ class ControlOwner:
                 return
             self._streams[sender] = _Stream(setpoint, now)
         else:
-            late = (stream.last.time_boot_ms - setpoint.time_boot_ms) & 0xFFFFFFFF
-            if 0 < late < 1e3 * self._settings.reordering_max and self._is_fresh(stream.time, now):
+            if not stream.is_next(setpoint, now, 1e3 * self._settings.reordering_max):
                 return
             stream.last = setpoint
             stream.time = now
@@ -87,14 +119,31 @@ class ControlOwner:
             return rejected_for_now(f"OFFBOARD denied: {why}")
         answer = self._autopilot.enter_offboard(stream.last, stream.time, now)
         self._owner = sender
+        self._is_handed_over = True
         return answer
+
+    def is_new_plan(self, session: int, number: int) -> bool:
+        """Return whether a stop plan of the ground in control has a higher number than the last one.
+
+        Another session, that of a ground started anew, begins with OFFBOARD only.
+        """
+        last_session, last_number = self._plan
+        if not (number > last_number if session == last_session else self._is_handed_over):
+            return False
+        self._plan, self._is_handed_over = (session, number), False
+        return True
+
+    @property
+    def owner(self) -> Sender | None:
+        """The ground that is in control, or was last; None before the first."""
+        return self._owner
 
     def _is_fresh(self, time: float, now: float) -> bool:
         return now - time < self._autopilot.state.setpoint_loss_time
 
     def _forget_silent(self, now: float) -> None:
         for sender, stream in tuple(self._streams.items()):
-            if not self._is_fresh(stream.time, now):
+            if sender != self._owner and not self._is_fresh(stream.time, now):
                 del self._streams[sender]
 
     def _has_room(self, sender: Sender) -> bool:

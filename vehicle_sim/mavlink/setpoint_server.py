@@ -7,11 +7,12 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.services.dispatcher import Dispatcher, Request
 from gcs.mavlink.services.unserved_inputs import Reminders
+from gcs.mavlink.stop_plan import read_stop_plan
 from idc_controller.rotations_float import euler_of
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.position_setpoints import read_global, read_local
 from vehicle_sim.autopilot.setpoint_stream import Setpoint
-from vehicle_sim.autopilot.setpoints import SetpointError, StopPlan, read_setpoint, read_stop_plan
+from vehicle_sim.autopilot.setpoints import SetpointError, checked_stop_plan, read_setpoint
 from vehicle_sim.mavlink.control_owner import ControlOwner
 from vehicle_sim.mavlink.geodesy import LocalFrame
 
@@ -64,26 +65,31 @@ class SetpointServer:
 
     def _on_stop_plan(self, fields: tuple[Any, ...], request: Request) -> None:
         now = request.now
-        if self._owner.in_control(now) != request.sender:
+        content = read_stop_plan(fields)
+        if content is None or self._owner.in_control(now) != request.sender:
             return
         try:
-            plan = read_stop_plan(fields, self._autopilot.state.settings.setpoints)
+            plan = checked_stop_plan(content, self._autopilot.state.settings.setpoints)
         except SetpointError:
             self.refused += 1
             return
-        start = plan.start - (self._clock(now) - now)
+        ahead = self._clock(now) - now
         # The ground estimates this clock from stamps of 32 bits, which may have begun anew since.
-        start += round((now - start) / STAMP_WRAP) * STAMP_WRAP
-        self._autopilot.take_stop_plan(StopPlan(start, *plan[1:]))
+        ahead += round((plan.start - ahead - now) / STAMP_WRAP) * STAMP_WRAP
+        plan = plan._replace(start=plan.start - ahead, descent=plan.descent - ahead)
+        if not self._autopilot.state.is_on_way(plan, now):
+            self.refused += 1
+        elif self._owner.is_new_plan(content.session, content.number):
+            self._autopilot.take_stop_plan(plan)
 
 
 class AttitudeSetpointServer(SetpointServer):
-    """Set-points and stop plans of a vehicle on a payload, which flies no other ones: what it refuses, it says."""
+    """Set-points, and stop plans in TUNNEL, of a vehicle on a payload: it flies no others, and says what it refuses."""
 
     def register(self, dispatcher: Dispatcher) -> None:
         """Take the messages of this service."""
         super().register(dispatcher)
-        dispatcher.register_fields(mavlink.MAVLink_trajectory_representation_bezier_message, self._on_stop_plan)
+        dispatcher.register_fields(mavlink.MAVLink_tunnel_message, self._on_stop_plan)
         for kind in (_LOCAL, _GLOBAL):
             dispatcher.register(kind, self._on_position)
 

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Mapping, Set
 from types import MappingProxyType
+from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -113,7 +114,6 @@ class Vehicle:
             frame = LocalFrame(home)
             self._setpoints: SetpointServer = PositionSetpointServer(self.autopilot, owner, clock, frame)
             self.aircraft = FreeAircraft(self.autopilot, owner, frame)
-            self.dispatcher.register(mavlink.MAVLink_heartbeat_message, self._on_heartbeat)
             self.telemetry.capabilities |= (
                 mavlink.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
                 | mavlink.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
@@ -124,6 +124,8 @@ class Vehicle:
             self.aircraft = CoupledAircraft(self.autopilot, owner)
         # A further protocol registers its messages and commands here.
         self._setpoints.register(self.dispatcher)
+        self._owner = None if free else owner
+        self.dispatcher.register_fields(mavlink.MAVLink_heartbeat_message, self._on_heartbeat)
         LinkServices(clock).register(self.dispatcher)
         self._missions = MissionServer(system_id, plans or CoupledPlans(), owner, self._peers, link.missions)
         self._missions.register(self.dispatcher)
@@ -174,7 +176,7 @@ class Vehicle:
         if now > self._latest:
             self._latest = now
         peer = request = None
-        is_ground = False
+        is_foreign = False
         messages = self._decoder.decode(datagram)
         for received in messages:
             system, component = received.system, received.component
@@ -186,19 +188,17 @@ class Vehicle:
                     return
                 if not peer.answered:
                     peer.hear(len(datagram), addressed=any(m.target_system in self._systems for m in messages))
-            if not is_ground and system != self.system_id:  # a companion of its own is none
-                is_ground = True
-                self.autopilot.ground_message_received(now)
+            if not is_foreign and system != self.system_id:
+                is_foreign = True
+                self.autopilot.message_received()
+                if self._owner is not None and self._owner.owner == (sender, system):
+                    self.autopilot.ground_heard(now)
             if request is None or request.component != component or request.system != system:
                 request = Request((sender, system), component, peer, now)
             if received.is_for(self.system_id, px4.AUTOPILOT_COMPONENT):
                 self.dispatcher.dispatch(received, request)
             else:
                 self._other_components.handle(received, request)
-
-    def _on_heartbeat(self, message: mavlink.MAVLink_heartbeat_message, request: Request) -> None:
-        if message.type == mavlink.MAV_TYPE_GCS and isinstance(self.autopilot, FreeAutopilot):
-            self.autopilot.ground_heartbeat_received(request.now)
 
     def datagrams_to_send(self, now: float) -> list[tuple[bytes, Address]]:
         """Return all that is due at ``now`` (s), each with its address."""
@@ -208,6 +208,14 @@ class Vehicle:
             self.send_changes()
         self._missions.run(now)
         return self._peers.datagrams_to_send(self.telemetry, now)
+
+    def _on_heartbeat(self, fields: tuple[Any, ...], request: Request) -> None:
+        """Take the HEARTBEAT of a ground: where none is in control of a vehicle on a payload, its data link is up."""
+        _, kind, *_ = fields
+        if kind != mavlink.MAV_TYPE_GCS or request.system == self.system_id:  # a companion of its own is none
+            return
+        if self._owner is None or self._owner.owner is None:
+            self.autopilot.ground_heard(request.now)
 
     @property
     def listeners(self) -> Set[Address]:

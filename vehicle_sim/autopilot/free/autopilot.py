@@ -55,14 +55,6 @@ class FreeAutopilot(Autopilot):
 
     # What the ground commands
 
-    def ground_message_received(self, now: float) -> None:
-        """See :meth:`.Autopilot.ground_message_received`; the data link is that of HEARTBEATs, as in PX4."""
-        self._decide_anew()
-
-    def ground_heartbeat_received(self, now: float) -> None:
-        """A HEARTBEAT of a ground station has come: the data link is up."""
-        self.state.link_time = now
-
     def arming_problem(self, now: float) -> str | None:
         """See :meth:`.Autopilot.arming_problem`; as in PX4 it wants the ground station whose loss it would react to."""
         problem = super().arming_problem(now)

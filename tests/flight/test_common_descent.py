@@ -1,0 +1,151 @@
+"""All vehicles descend together, whatever is lost first and second, and whenever: ground and vehicles, without physics.
+
+The ground's stop plans, what it infers of a lost vehicle and the vehicles' autopilots are real; links of one step each
+way, and vehicles that hover in their places, are not.
+"""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from flying import AIRFRAME
+from onboard import step_alone
+
+from gcs.config.flight_settings import DEFAULTS
+from gcs.flight import control_loop
+from gcs.flight.compute_times import ComputeTimes
+from gcs.flight.control_loop import ControlLoop, Hold
+from gcs.mavlink import px4
+from idc_controller.estimation.setpoint_history import SetpointHistory
+from idc_controller.trajectory.stop_plan import StopPlan as TeamPlan
+from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.setpoints import AttitudeSetpoint, StopPlan
+from vehicle_sim.autopilot.vehicle_parameters import vehicle_parameters
+from vehicle_sim.world.sensors import Measurement
+
+N, STEP = 4, 0.02
+LINK = 1
+"""Steps that a message takes each way."""
+LOSS, LAND_DELAY = DEFAULTS.failsafe.telemetry_timeout, 5.0
+BOUND = (2 * LINK + 1) * STEP
+"""A round trip of the links and a step."""
+FIRST = 50
+"""Step of the first loss."""
+COMMANDS, TELEMETRY, BOTH, GROUND = "commands", "telemetry", "both", "ground"
+
+
+class Team:
+    """A ground and its vehicles; ``losses``: (what, of which vehicle, from which step on)."""
+
+    def __init__(self, losses):
+        self.losses, self.step, self.flying, self.landing_at = losses, 0, True, None
+        self.down, self.up = [], []
+        self.heard, self.offboard = [0] * N, [True] * N
+        self.descends = [None] * N
+        estimator = SimpleNamespace(setpoints=SetpointHistory(N))
+        self.ground = ControlLoop(estimator, SimpleNamespace(parameters=None), ComputeTimes(lambda: 0.0))
+        self.pilots = [Autopilot(AIRFRAME, vehicle_parameters(AIRFRAME, 1 + i, 250)) for i in range(N)]
+        for i, pilot in enumerate(self.pilots):
+            self.sense(i)
+            pilot.enter_offboard(self.setpoint(0), 0.0, 0.0)
+            assert pilot.arm(0.0, force=True).text == ""
+            pilot.state.land.lift(AIRFRAME.mass * AIRFRAME.g)
+
+    @property
+    def now(self):
+        return self.step * STEP
+
+    def sense(self, i):
+        place = 0.0, float(i), -5.0
+        step_alone(self.pilots[i], Measurement(self.now, (1, 0, 0, 0), (0, 0, 0), place, (0, 0, 0)), self.now)
+
+    @staticmethod
+    def setpoint(step):
+        return AttitudeSetpoint((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.3, step)
+
+    def is_lost(self, *what, vehicle=None):
+        return any(
+            loss in what and i in (None, vehicle) and step is not None and self.step >= step
+            for loss, i, step in self.losses
+        )
+
+    def send(self, kind, content):
+        for i in range(N):
+            if not self.is_lost(COMMANDS, BOTH, vehicle=i):
+                self.down.append((self.step + LINK, i, kind, content))
+
+    def fly_ground(self):
+        for at, i, flown in [report for report in self.up if report[0] == self.step]:
+            self.heard[i], self.offboard[i] = at, flown is not None
+            if flown is not None:
+                reported = [0.001 * flown, 0.0, 10.0]
+                self.ground.estimator.setpoints.confirm(i, self.now - STEP, self.now, reported, 0.0)
+        silent = [(self.step - heard) * STEP for heard in self.heard]
+        if self.flying and (max(silent) > LOSS or not all(self.offboard)):
+            cut_off = max(silent) if max(silent) > LOSS else LOSS + LINK * STEP
+            self.flying, self.landing_at = False, self.step + round(LAND_DELAY / STEP)
+            self.ground.choose_stop_plan(self.now - cut_off)
+            self.send("plan", self.ground.stop_plan)
+            self.send("mode", px4.MODE_HOLD)
+        if self.flying:
+            u = np.array([0.001 * self.step, 0.0] * N + [10.0] * N)
+            record = SimpleNamespace(
+                decision=SimpleNamespace(u=u, flat=None), estimate=SimpleNamespace(x=None, time=self.now)
+            )
+            self.ground.send(record, self.now + LINK * STEP, np.full(N, self.now), Hold(LOSS + LAND_DELAY, 2.0 * LOSS))
+            self.send("plan", self.ground.stop_plan)
+            self.send("setpoint", self.step)
+        elif self.step == self.landing_at:
+            self.send("mode", px4.MODE_LAND)
+
+    def fly_vehicles(self):
+        for _, i, kind, content in [message for message in self.down if message[0] == self.step]:
+            pilot = self.pilots[i]
+            if kind == "plan" and pilot.state.has_fresh_setpoints(self.now):
+                points = ((0.0, float(i), -5.0),) * 5
+                pilot.take_stop_plan(StopPlan(content.start, content.descent, content.duration, points, 0.0))
+            elif kind == "setpoint":
+                pilot.follow(self.setpoint(content), self.now)
+            elif kind == "mode":
+                pilot.enter_mode(content, self.now)
+        for i, pilot in enumerate(self.pilots):
+            self.sense(i)
+            flown = pilot.state.setpoints.at(self.now) if pilot.mode == px4.MODE_OFFBOARD else None
+            if not self.is_lost(TELEMETRY, BOTH, vehicle=i):
+                self.up.append((self.step + LINK, i, None if flown is None else flown.time_boot_ms))
+            if self.descends[i] is None and pilot.state.is_descending:
+                self.descends[i] = self.now
+
+    def run(self):
+        """Return when each vehicle began to descend (s); None: it holds."""
+        while self.step < FIRST + 700 and None in self.descends:
+            self.step += 1
+            if not self.is_lost(GROUND):
+                self.fly_ground()
+            self.fly_vehicles()
+            self.down = [message for message in self.down if message[0] > self.step]
+            self.up = [report for report in self.up if report[0] > self.step]
+        return self.descends
+
+
+@pytest.fixture(autouse=True)
+def hovering(monkeypatch):
+    def stop_plan(parameters, flat, time, x, choose):
+        return TeamPlan(time, 4.0, np.zeros((N, 5, 3)))
+
+    monkeypatch.setattr(control_loop, "stop_plan", stop_plan)
+
+
+@pytest.mark.parametrize("delay", [0, 1, 3, 10, 23, 24, 26, 50, 249, 250, 285, None])
+@pytest.mark.parametrize("second", [(GROUND, None), (COMMANDS, 2), (TELEMETRY, 2), (BOTH, 2)])
+@pytest.mark.parametrize("first", [COMMANDS, TELEMETRY, BOTH])
+def test_all_vehicles_descend_together_whatever_is_lost_first_and_second(first, second, delay):
+    times = Team([(first, 1, FIRST), (*second, None if delay is None else FIRST + delay)]).run()
+    assert None not in times, times
+    assert max(times) - min(times) <= BOUND + 1e-9, times
+    assert FIRST * STEP + LAND_DELAY - LOSS < min(times) < FIRST * STEP + LAND_DELAY + 2.0 * LOSS + BOUND
+
+
+def test_all_vehicles_descend_together_after_the_ground_alone_is_lost():
+    times = Team([(GROUND, None, FIRST)]).run()
+    assert max(times) - min(times) <= 1e-9
