@@ -85,19 +85,24 @@ class HoldSettings(SettingsTable):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LandDetectorSettings(SettingsTable):
-    """Conditions of a vehicle in the air and of one on the ground."""
+    """Conditions of a vehicle in the air and of one on the ground.
+
+    On the ground its payload stands, and carries it: it neither rises nor sinks although its thrust is below its own
+    weight. In the air it would sink at 1 m/s2 with :attr:`supported_thrust`, and faster with any payload.
+    """
 
     lifted: float = 0.15  # m; above where it was armed: the vehicle is in the air
     vertical_speed_max: float = 0.1  # m/s; vertical speed of a vehicle on the ground
-    time: float = 0.5  # s; for which a condition of the ground must last
-    touchdown_thrust: Share = 0.85  # share of the hover thrust below which the ground carries the rest
+    time: float = 0.5  # s; for which a vehicle must stand
+    time_elsewhere: float = 5.0  # s; the same, on its own and not at the altitude where it was armed
+    altitude_tolerance: float = 0.5  # m; from the altitude where it was armed: that of landing, or its drift
+    touchdown_thrust: Share = 0.85  # share of the hover thrust below which a vehicle that does not sink may stand
     # m/s; sinking below which a descent is stopped: half of its speed, for vehicles may still sink aside
     touchdown_sinking: float = 0.25
     velocity_filter: float = 0.2  # s; time constant of the vertical speed
     altitude_filter: float = 0.1  # s; time constant of the altitude
     hover_filter: float = 2.0  # s; time constant of the hover thrust
-    unloaded_share: Share = 0.5  # of the hover thrust beyond the own weight, below which the payload is not carried
-    supported_thrust: Share = 0.9  # share of the own weight below which something else supports the vehicle
+    supported_thrust: Share = 0.9  # of the own weight: thrust of a vehicle that stands, or is tried for that
 
 
 @dataclass(frozen=True, eq=False, repr=False)

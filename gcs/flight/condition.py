@@ -61,7 +61,7 @@ class Check(Enum):
     CONNECT = "while connecting"
     PREFLIGHT = "before arming"
     COMMAND = "while a command sequence is carried out"
-    LINK = "whenever the ground has received or is to send, from spool-up to touchdown"
+    LINK = "whenever the ground has received or is to send, from spool-up to the end of spool-down"
     STEP = "at every control step"
     IN_AIR = "at every control step in the air"
     ESTIMATE = "at every control step in the air, on the new estimate"

@@ -132,9 +132,10 @@ class Flight:
     def check_links(self, time: float, now: float) -> bool:
         """Return whether an autonomous landing begins at team ``time``, ``now`` on the ground's clock.
 
-        To be called at every exchange: a vehicle that stops late stops elsewhere.
+        To be called at every exchange: a vehicle that stops late stops elsewhere. Also while the rotors spool down: a
+        lost vehicle holds with its hover thrust, and those that stop before it leave it the payload.
         """
-        if self.phase not in IN_AIR and self.phase is not Phase.SPOOL_UP:
+        if self.phase not in CONTROLLED:
             return False
         self._evaluate(Check.LINK, time, now)
         return self.phase is Phase.AUTONOMOUS_LANDING

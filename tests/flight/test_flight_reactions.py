@@ -14,7 +14,7 @@ from gcs.flight.condition import Trigger
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.flight import Flight
 from gcs.flight.mission_trajectory import MissionTrajectory
-from gcs.flight.phase import Phase
+from gcs.flight.phase import CONTROLLED, Phase
 from gcs.mavlink import px4
 from gcs.mission.read import read_mission
 from idc_controller.guidance.progress import Guidance
@@ -69,8 +69,9 @@ def test_interrupted_flight_brakes_and_lands_under_control(phase):
     assert np.ptp(path[:, :2], axis=0).max() < 2.0
 
 
-def test_lost_vehicle_lands_all_by_the_stop_plan_that_it_has():
-    flight = Watched(Phase.FLY)
+@pytest.mark.parametrize("phase", [Phase.FLY, Phase.SPOOL_DOWN])
+def test_lost_vehicle_lands_all_by_the_stop_plan_that_it_has(phase):
+    flight = Watched(phase)
     flight.fails(Failsafe.TELEMETRY_LOST, vehicles=(), cut_off=0.3)
     assert flight.phase is Phase.AUTONOMOUS_LANDING
     assert flight.chosen == [pytest.approx(4.7)]
@@ -102,9 +103,9 @@ def test_failsafe_after_the_end_is_left_alone():
     assert (flight.phase, flight.commands, flight.reason) == (Phase.ENDED, [], "")
 
 
-def test_links_are_checked_in_the_air_alone():
+def test_links_are_checked_while_the_rotors_carry_anything():
     for phase in Phase:
         flight, asked = Watched(phase), []
         flight.failsafes.evaluate = lambda check, moment, asked=asked: asked.append(moment)
         assert not flight.check_links(1.0, 2.0)
-        assert bool(asked) == (phase in (Phase.SPOOL_UP, Phase.CLIMB, Phase.FLY, Phase.HOLD, Phase.LAND))
+        assert bool(asked) == (phase in CONTROLLED)

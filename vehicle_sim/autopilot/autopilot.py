@@ -196,7 +196,7 @@ class Autopilot:
         """Take the actions of failsafes and of a touch-down."""
         check_failsafes(COUPLED, self.state, now)
         if self.state.hold is not None:
-            self._check_touchdown(now)
+            self._check_touchdown()
 
     def _decide_anew(self) -> None:
         """Decide with the next step, too: a message of a ground, or the last decision, may have changed anything."""
@@ -225,16 +225,17 @@ class Autopilot:
         measured = state.navigation.estimate
         assert measured is not None
         if state.hold is not None:
-            attitude, thrust = state.hold.command(measured, now, state.is_supported(now))
+            supported = state.is_supported(now)
+            attitude, thrust = state.hold.command(measured, now, supported)
+            if supported:  # whatever the altitude says, which may drift
+                thrust = min(thrust, state.supported_thrust)
             state.actuation.command(attitude, NO_RATES, thrust, now)
         else:
             level = attitude_of_force(0.0, 0.0, -1.0, euler_of(measured.attitude)[2])
             state.actuation.command(level, NO_RATES, 0.0, now)
 
-    def _check_touchdown(self, now: float) -> None:
+    def _check_touchdown(self) -> None:
         state = self.state
-        if state.armed and state.is_descending:
-            landed = state.land.touched_down and state.is_supported(now)
-            if landed or not state.land.in_air:
-                state.notices.append("Touch-down: disarmed")
-                state.stop()
+        if state.armed and state.is_descending and not state.land.in_air:
+            state.notices.append("Touch-down: disarmed")
+            state.stop()

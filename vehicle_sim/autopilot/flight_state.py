@@ -111,13 +111,17 @@ class FlightState:
         return None
 
     @property
+    def supported_thrust(self) -> float:
+        """The thrust (N) of a vehicle whose payload stands: less than its own weight."""
+        return self.settings.land_detector.supported_thrust * (self.airframe.mass * self.airframe.g)
+
+    @property
     def is_up(self) -> bool:
         """Return True if it is off the ground, or upright on its link only because its rotors turn."""
-        supported = self.settings.land_detector.supported_thrust * (self.airframe.mass * self.airframe.g)
-        return self.land.in_air or self.actuation.thrust > supported
+        return self.land.in_air or self.actuation.thrust > self.supported_thrust
 
     def is_supported(self, now: float) -> bool:
-        """Return True if it would sink, but the payload under it stands on the ground."""
+        """Return True if it does not sink as it should: the payload under it may stand on the ground."""
         sinks = self.hold is not None and self.hold.plan.is_at_descent_speed(now)
         return sinks and self.land.touching
 
@@ -141,7 +145,7 @@ class FlightState:
         if not self.land.in_air:
             self.land.lift(thrust)
         hover = self.land.hover_thrust or max(thrust, weight)
-        self.hold = HoldController(plan, hover, weight, self.airframe.g, settings)
+        self.hold = HoldController(plan, hover, self.supported_thrust, self.airframe.g, settings)
 
     def begin_descent(self, now: float) -> None:
         """Descend from where it is, or when the other vehicles do, where that is known."""

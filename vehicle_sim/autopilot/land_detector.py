@@ -9,16 +9,21 @@ from vehicle_sim.autopilot.onboard_kernels import (
     HOVER_THRUST,
     IN_AIR,
     LAST_TIME,
-    LIGHT_SINCE,
+    STANDING_SINCE,
     THRUST_MAX,
-    TIME,
     TOUCHING_SINCE,
     WEIGHT,
 )
 
 
 class LandDetector:
-    """Landed state: on the ground until it rises, in the air until it neither moves vertically nor carries its payload.
+    """Landed state: on the ground until it rises, in the air until it surely stands.
+
+    It stands if neither velocity nor altitude moves while the thrust is below the vehicle's own weight: something under
+    it carries the rest. Without a ground it comes to that in two stages, as PX4's ground contact and landed: one that
+    should sink and does not is :attr:`touching`; its thrust is then lowered below its own weight, with which it sinks
+    in the air. Whether it stands depends on no thrust that was learned. Away from the altitude where it was armed,
+    neighbours may carry it for a while, so that it must stand longer. A position and velocity that repeat say nothing.
 
     It takes its steps with those of the whole team, in :func:`.onboard_kernels.detect_landings`.
     """
@@ -45,19 +50,14 @@ class LandDetector:
 
     @property
     def touching(self) -> bool:
-        """Return True if something keeps a vehicle that is commanded to sink from sinking."""
+        """Return True if a vehicle with less than its hover thrust has not sunk, and has not since."""
         return bool(self._found[TOUCHING_SINCE] < self._found[LAST_TIME])
-
-    @property
-    def touched_down(self) -> bool:
-        """Return True if :attr:`touching` has lasted."""
-        return bool(self._found[LAST_TIME] - self._found[TOUCHING_SINCE] >= self._detector[TIME])
 
     def start(self) -> None:
         """Take the vehicle to be on the ground here: armed, or disarmed."""
         self._found[GROUND] = self._found[ALTITUDE]
         self._found[IN_AIR] = 0.0
-        self._found[[LIGHT_SINCE, TOUCHING_SINCE]] = math.inf
+        self._found[[STANDING_SINCE, TOUCHING_SINCE]] = math.inf
 
     def lift(self, thrust: float) -> None:
         """Take the vehicle to fly: it is upright on its link only by its ``thrust`` (N), also before it rises."""

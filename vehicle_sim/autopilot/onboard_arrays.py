@@ -13,8 +13,9 @@ from vehicle_sim.autopilot.onboard_kernels import (
     IN_AIR,
     LANDING_COLUMNS,
     LAST_TIME,
-    LIGHT_SINCE,
+    RATE,
     STAMP_COLUMNS,
+    STANDING_SINCE,
     TARGET_COLUMNS,
     TOUCHING_SINCE,
     VELOCITY,
@@ -54,8 +55,8 @@ class OnboardArrays:
         """Return the arrays of vehicles that have not begun."""
         n = len(airframes)
         landings = np.full((n, LANDING_COLUMNS), np.nan)
-        landings[:, [VELOCITY, LAST_TIME, IN_AIR]] = 0.0
-        landings[:, [LIGHT_SINCE, TOUCHING_SINCE]] = np.inf
+        landings[:, [VELOCITY, RATE, LAST_TIME, IN_AIR]] = 0.0
+        landings[:, [STANDING_SINCE, TOUCHING_SINCE]] = np.inf
         return cls(
             np.array([_airframe(airframe) for airframe in airframes]),
             np.array([_detector(airframe, settings) for airframe in airframes]),
@@ -89,5 +90,6 @@ def _detector(airframe: Airframe, settings: LandDetectorSettings) -> list[float]
     return [
         airframe.mass * airframe.g, airframe.rotors.thrust_max, settings.lifted, settings.vertical_speed_max,
         settings.time, settings.touchdown_thrust, settings.touchdown_sinking, settings.velocity_filter,
-        settings.altitude_filter, settings.hover_filter, settings.unloaded_share,
+        settings.altitude_filter, settings.hover_filter, settings.altitude_tolerance,
+        settings.time_elsewhere,
     ]  # fmt: skip

@@ -21,15 +21,18 @@ TARGET_COLUMNS = 9
 # rotor (N), its force per torque about roll or pitch and about yaw (1/m), squared speed per thrust (1/(N s2)).
 TWO_KP, KD, FORCE_MAX, PER_ROLL_PITCH, PER_YAW, PER_K_F = 6, 7, 8, 9, 10, 11
 
-# Columns of ``landings``: what the detector has found; NaN: not known yet. Times in s, m, m/s, N.
-ALTITUDE, VELOCITY, GROUND, LAST_TIME, LIGHT_SINCE, TOUCHING_SINCE, HOVER_THRUST, IN_AIR = 0, 1, 2, 3, 4, 5, 6, 7
-LANDING_COLUMNS = 8
+# Columns of ``landings``: what the detector has found; NaN: not known yet. Times in s, m, m/s, N. VELOCITY is that of
+# the sensor, RATE that of the altitude, both low-passed; LAST_Z and LAST_V_Z are of the last sample.
+(
+    ALTITUDE, VELOCITY, GROUND, LAST_TIME, STANDING_SINCE, TOUCHING_SINCE, HOVER_THRUST, IN_AIR, RATE, LAST_Z, LAST_V_Z,
+) = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10  # fmt: skip
+LANDING_COLUMNS = 11
 
 # Columns of ``detectors``: the vehicle's weight and largest thrust (N), and the settings of these names.
 (
     WEIGHT, THRUST_MAX, LIFTED, VERTICAL_SPEED_MAX, TIME, TOUCHDOWN_THRUST, TOUCHDOWN_SINKING, VELOCITY_FILTER,
-    ALTITUDE_FILTER, HOVER_FILTER, UNLOADED_SHARE,
-) = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10  # fmt: skip
+    ALTITUDE_FILTER, HOVER_FILTER, ALTITUDE_TOLERANCE, TIME_ELSEWHERE,
+) = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11  # fmt: skip
 
 # Columns of ``stamps``: the time of the last fresh sample, and when it came (s); -inf: there has been none.
 SAMPLE_TIME, FRESH_AT = 0, 1
@@ -48,7 +51,7 @@ def landed(found: Array) -> None:
     """Take the vehicle to be on the ground here: armed, or disarmed."""
     found[GROUND] = found[ALTITUDE]
     found[IN_AIR] = 0.0
-    found[LIGHT_SINCE] = found[TOUCHING_SINCE] = math.inf
+    found[STANDING_SINCE] = found[TOUCHING_SINCE] = math.inf
 
 
 @kernel
@@ -182,8 +185,8 @@ def detect_landings(
 ) -> None:  # fmt: skip
     """Take one step of landing detection at ``now`` (s); see :class:`.land_detector.LandDetector`.
 
-    The thrust is that of ``targets``; ``learns``: vehicles that learn their hover thrust from it. Those that lift off
-    or land are ``idle_until`` (N,) -inf: they have something to decide.
+    The thrust is that of ``targets``; ``learns``: vehicles that fly set-points of the ground, and learn their hover
+    thrust from it. Those that lift off or land are ``idle_until`` (N,) -inf: they have something to decide.
     """
     for i in range(landings.shape[0]):
         s, d, found, thrust = estimates[i], detectors[i], landings[i], targets[i, THRUST]
@@ -195,7 +198,9 @@ def detect_landings(
         if math.isnan(found[ALTITUDE]):
             found[ALTITUDE] = z
             continue
-        found[ALTITUDE] += (z - found[ALTITUDE]) * step / (d[ALTITUDE_FILTER] + step)
+        behind = z - found[ALTITUDE]
+        found[ALTITUDE] += behind * step / (d[ALTITUDE_FILTER] + step)
+        found[RATE] += (behind / d[ALTITUDE_FILTER] - found[RATE]) * step / (d[VELOCITY_FILTER] + step)
         found[VELOCITY] += (v_z - found[VELOCITY]) * step / (d[VELOCITY_FILTER] + step)
         x, y = s[4], s[5]
         lift = min(max(thrust * (1.0 - 2.0 * (x * x + y * y)), d[WEIGHT]), d[THRUST_MAX])
@@ -208,15 +213,22 @@ def detect_landings(
         if math.isnan(found[HOVER_THRUST]) or learns[i]:
             hover = lift if math.isnan(found[HOVER_THRUST]) else found[HOVER_THRUST]
             found[HOVER_THRUST] = hover + (lift - hover) * step / (d[HOVER_FILTER] + step)
-        hover = found[HOVER_THRUST]
-        slow = abs(found[VELOCITY]) < d[VERTICAL_SPEED_MAX]
-        if not slow or thrust > d[WEIGHT] + d[UNLOADED_SHARE] * (hover - d[WEIGHT]):
-            found[LIGHT_SINCE] = now
-        if found[VELOCITY] > d[TOUCHDOWN_SINKING] or thrust > d[TOUCHDOWN_THRUST] * hover:
-            found[TOUCHING_SINCE] = now
-        found[LIGHT_SINCE] = min(found[LIGHT_SINCE], now)
-        found[TOUCHING_SINCE] = min(found[TOUCHING_SINCE], now)
-        if now - found[LIGHT_SINCE] >= d[TIME]:
+        # At rest without noise the rates are zero; otherwise a position and velocity that repeat are no measurement.
+        stuck = z == found[LAST_Z] and v_z == found[LAST_V_Z] and (s[10] != 0.0 or s[11] != 0.0 or s[12] != 0.0)
+        found[LAST_Z], found[LAST_V_Z] = z, v_z
+        sinks = max(found[VELOCITY], found[RATE]) > d[TOUCHDOWN_SINKING]
+        if sinks or learns[i]:
+            found[TOUCHING_SINCE] = math.inf
+        elif thrust <= d[TOUCHDOWN_THRUST] * found[HOVER_THRUST] and not stuck:
+            found[TOUCHING_SINCE] = min(found[TOUCHING_SINCE], now)
+        if sinks or abs(found[VELOCITY]) >= d[VERTICAL_SPEED_MAX] or thrust > d[WEIGHT]:
+            found[STANDING_SINCE] = math.inf
+            continue
+        found[STANDING_SINCE] = min(found[STANDING_SINCE], now)
+        if stuck:
+            found[STANDING_SINCE] += step
+        at_home = abs(found[GROUND] - found[ALTITUDE]) < d[ALTITUDE_TOLERANCE]
+        if now - found[STANDING_SINCE] >= (d[TIME] if at_home or learns[i] else d[TIME_ELSEWHERE]):
             landed(found)
             idle_until[i] = -math.inf
 
