@@ -90,7 +90,7 @@ REQUIREMENTS = (
 
 USED_IF_OFFERED = (
     ("SET_ATTITUDE_TARGET, taken at `rates.control`", "the set-points: attitude and thrust"),
-    ("TRAJECTORY_REPRESENTATION_BEZIER, taken", "the stop plan that is flown when set-points are lost"),
+    ("TUNNEL with stop plans (`gcs/mavlink/stop_plan.py`), taken", "what is flown when set-points are lost"),
     ("ATTITUDE_TARGET", "which set-point is in force: without it the estimator assumes that all arrive"),
     ("OBSTACLE_DISTANCE_3D and OBSTACLE_DISTANCE", "returns of the range sensor: without them only the map is avoided"),
     ("VIBRATION", "clipping of the accelerometer, a sign of an impact"),

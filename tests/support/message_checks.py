@@ -18,7 +18,7 @@ from vehicle_bench import ACCEPTED, OFFBOARD, attitude_target
 
 from gcs.mavlink import px4
 from gcs.mavlink.newer_messages import COMMAND_CANCEL, NEWER
-from gcs.mavlink.setpoints import stop_plan_message
+from gcs.mavlink.stop_plan import StopPlanContent, stop_plan_message
 
 Check = Callable[[ServiceClient], bool]
 
@@ -45,7 +45,8 @@ def flies_stop_plan(client: ServiceClient) -> bool:
     client.take_off()
     x, y, z = client.place
     points = [(x + 3.0 * k / 4, y, z) for k in (0, 1, 4, 4, 4)]
-    client.send(message_of(stop_plan_message(client.now, 4.0, points)))
+    descent = client.now + 60.0
+    client.send(message_of(stop_plan_message(1, StopPlanContent(1, 1, client.now, descent, 4.0, 0.0, points))))
     client.streaming.clear()
     client.run(5.0)
     return abs(client.place[0] - x - 3.0) < 0.5
@@ -247,7 +248,7 @@ def has_no_mission(client: ServiceClient, message: Any) -> bool:
 
 
 OF_TEAM: Mapping[Any, Check] = {
-    m.MAVLink_trajectory_representation_bezier_message: flies_stop_plan,
+    m.MAVLink_tunnel_message: flies_stop_plan,
     **{
         type(target): partial(says, message=target, text="SET_ATTITUDE_TARGET")
         for target in (LOCAL_TARGET, GLOBAL_TARGET)
