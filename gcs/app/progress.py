@@ -22,6 +22,9 @@ DRAW_INTERVAL = 0.5
 STATUS_INTERVAL = 10.0
 """s of flight time from one print of the figures to the next elsewhere."""
 
+CONNECT_INTERVAL = 2.0
+"""s of ground time after which a ground that still connects says what it waits for, and for the next time."""
+
 
 class FlightProgress:
     """At a terminal a block of a few lines that is redrawn, above it a line for each phase; elsewhere lines only.
@@ -38,6 +41,7 @@ class FlightProgress:
         self._status: FlightStatus | None = None
         self._begin, self._frames = time.monotonic(), cycle("-\\|/")
         self._times = math.nan, math.inf
+        self._waits, self._waits_at = "", 0.0
         self._figures: list[Text] = []
         self._is_shown = False
         self._live = Live(
@@ -57,6 +61,8 @@ class FlightProgress:
                 self._console.print(f"{flight.elapsed:8.2f} s  {flight.phase.value}")
             elif not self._phases_logged:
                 self._console.print(f"{flight.elapsed:.2f} s: phase {flight.phase.value}")
+        if flight.phase is Phase.CONNECT:
+            self._print_waits(flight)
         due = math.floor(flight.elapsed / self._interval)
         # A flight faster than real time has more figures than are shown.
         if not changed and (due == self._due or (self._redrawn and not self._is_shown)):
@@ -70,6 +76,13 @@ class FlightProgress:
         elif due != self._due:
             self._print(flight.elapsed, self._status)
         self._due = due
+
+    def _print_waits(self, flight: Flight) -> None:
+        """Print what the ground waits for, unless it has been printed."""
+        now, waits = flight.ground_time, flight.system.preflight.missing
+        if now - self._waits_at >= CONNECT_INTERVAL and waits != self._waits:
+            self._waits, self._waits_at = waits, now
+            self._console.print(f"{flight.elapsed:8.2f} s  waits: {waits}", soft_wrap=True)
 
     def _draw(self, status: FlightStatus) -> None:
         self._is_shown = False

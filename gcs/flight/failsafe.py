@@ -344,7 +344,8 @@ class Failsafe(AlarmCode):
     AUTOPILOT_UNFIT = (Check.PREFLIGHT, _autopilot_unfit, Reaction.REFUSE,
         "see docs/autopilots.md; set its message intervals, or reduce `rates.control`",
         "before arming, a vehicle does not answer TIMESYNC, or positions come less often than set-points are sent")
-    LINK_UNFIT = (Check.PREFLIGHT, _link_unfit, Reaction.REFUSE, "reduce its message rates, or use a faster link",
+    LINK_UNFIT = (Check.PREFLIGHT, _link_unfit, Reaction.REFUSE,
+        "reduce its message rates, or use a faster link; of a simulation on a busy machine lower `--speed`",
         "before arming, datagrams of one vehicle usually take more than {latency_limit} s one way")
     OBSTRUCTED = (Check.PREFLIGHT, _obstructed, Reaction.REFUSE, "clear the pad",
         "an obstacle of the map, or one that the range sensors see, reaches into the formation on the pad")
@@ -364,7 +365,7 @@ class Failsafe(AlarmCode):
     TELEMETRY_LOST = (Check.LINK, _telemetry_lost, Reaction.AUTONOMOUS_LANDING, "check its MAVLink link",
         "one vehicle has sent no telemetry for {telemetry_timeout} s")
     LINK_LATENCY_EXCEEDED = (Check.LINK, _link_latency_exceeded, Reaction.AUTONOMOUS_LANDING,
-        "check its MAVLink link for congestion",
+        "check its MAVLink link for congestion; of a simulation on a busy machine lower `--speed`",
         "datagrams of one vehicle usually, or all for {latency_window} s, take more than {latency_limit} s one way")
     DISARMED_IN_FLIGHT = (Check.LINK, _disarmed_in_flight, Reaction.AUTONOMOUS_LANDING, "act on its STATUSTEXT",
         "a vehicle has disarmed itself")

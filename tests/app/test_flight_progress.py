@@ -140,6 +140,24 @@ def test_plain_lines_have_no_control_sequences_and_figures_every_ten_seconds(fli
     assert float(loss) == pytest.approx(20.0, abs=8.0)
 
 
+def test_ground_that_does_not_connect_says_what_it_waits_for_once_and_again_when_that_changes(tmp_path):
+    mission = read_mission(MISSIONS / "hop.toml")
+    console = Console(file=io.StringIO(), width=80, highlight=False)
+    with FlightRecorder(tmp_path, 0.0) as recorder:
+        flight = ground_station(mission, [None] * 4, recorder).flight
+        progress, preflight = FlightProgress(console), flight.system.preflight
+        for tenths in range(80):
+            flight.time = flight.ground_time = now = 0.1 * tenths
+            preflight.missing = "0 of 4" if now < 1.0 else "1 of 4" if now < 3.0 else f"{min(now, 5.0):.1f} of 4"
+            progress.update(flight)
+    assert console.file.getvalue().splitlines() == [
+        "    0.00 s  connect",
+        "    2.00 s  waits: 1 of 4",
+        "    4.00 s  waits: 4.0 of 4",
+        "    6.00 s  waits: 5.0 of 4",
+    ]
+
+
 def test_links_show_loss_latency_and_silence_by_their_limits(tmp_path):
     mission = read_mission(MISSIONS / "hop.toml")
     with FlightRecorder(tmp_path, 0.0) as recorder:
