@@ -62,14 +62,13 @@ class LogRequests:
         self._has_come = False
         return messages
 
-    def handle(self, message: Message) -> None:
-        """Take what ``message`` answers, if it is an answer that is waited for."""
-        if self._due == math.inf:
-            return
-        if isinstance(message, mavlink.MAVLink_autopilot_version_message):
-            self._has_version = True
-        elif isinstance(message, mavlink.MAVLink_param_value_message) and message.param_index < message.param_count:
-            # Any but that of the hash of all.
+    def take_version(self, message: mavlink.MAVLink_autopilot_version_message) -> None:
+        """Take what the vehicle is."""
+        self._has_version = True
+
+    def take_value(self, message: mavlink.MAVLink_param_value_message) -> None:
+        """Take a parameter: any but the hash of all counts, while they are waited for."""
+        if self._due < math.inf and message.param_index < message.param_count:
             self._count = message.param_count
             self._indices.add(message.param_index)
             self._has_come = True

@@ -1,8 +1,10 @@
 """Requests to one vehicle: commands and parameter reads, repeated until they are answered."""
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
+from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -111,21 +113,34 @@ class Requests:
             command.next_try = now + self._settings.retry_interval
         return messages
 
-    def handle(self, message: Message) -> None:
-        """Take the answer to a request, if ``message`` is one."""
-        if isinstance(message, mavlink.MAVLink_command_ack_message):
-            command = self._pending.get(message.command)
-            if command is not None and message.result != mavlink.MAV_RESULT_IN_PROGRESS:
-                del self._pending[command.number]
-                command.result = message.result
-                accepted = message.result == mavlink.MAV_RESULT_ACCEPTED
-                command.state = CommandState.ACCEPTED if accepted else CommandState.REFUSED
-        self._for_log.handle(message)
-        if isinstance(message, mavlink.MAVLink_param_value_message) and message.param_id in self._kept:
-            try:
-                value = px4.parameter_from_wire(message.param_value, message.param_type)
-            except ValueError:
-                return
-            if math.isfinite(value):
-                self._parameters[message.param_id] = float(value)
-                self._wanted.pop(message.param_id, None)
+    @property
+    def handlers(self) -> Mapping[int, Callable[[Any], None]]:
+        """Return what takes an answer, by message id."""
+        return {
+            mavlink.MAVLINK_MSG_ID_COMMAND_ACK: self.take_acknowledgement,
+            mavlink.MAVLINK_MSG_ID_PARAM_VALUE: self.take_value,
+            mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION: self._for_log.take_version,
+        }
+
+    def take_acknowledgement(self, message: mavlink.MAVLink_command_ack_message) -> None:
+        """Take the answer to a command."""
+        command = self._pending.get(message.command)
+        if command is None or message.result == mavlink.MAV_RESULT_IN_PROGRESS:
+            return
+        del self._pending[command.number]
+        command.result = message.result
+        accepted = message.result == mavlink.MAV_RESULT_ACCEPTED
+        command.state = CommandState.ACCEPTED if accepted else CommandState.REFUSED
+
+    def take_value(self, message: mavlink.MAVLink_param_value_message) -> None:
+        """Take the value of a parameter."""
+        self._for_log.take_value(message)
+        if message.param_id not in self._kept:
+            return
+        try:
+            value = px4.parameter_from_wire(message.param_value, message.param_type)
+        except ValueError:
+            return
+        if math.isfinite(value):
+            self._parameters[message.param_id] = float(value)
+            self._wanted.pop(message.param_id, None)

@@ -2,8 +2,9 @@
 
 import math
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -11,7 +12,7 @@ from gcs.mavlink import px4
 from gcs.mavlink.address import Address
 from gcs.mavlink.clock import RemoteClock
 from gcs.mavlink.link_statistics import LinkStatistics
-from gcs.mavlink.messages import Message, Received
+from gcs.mavlink.messages import Received
 from gcs.mavlink.requests import Requests
 from gcs.mavlink.scan_sequence import RETURNS, SCAN_END
 from gcs.mavlink.setpoints import SetpointStream
@@ -23,26 +24,6 @@ _NAVIGATION, _TIMESYNC = (_ATTITUDE, _POSITION), mavlink.MAVLINK_MSG_ID_TIMESYNC
 _VIBRATION = mavlink.MAVLINK_MSG_ID_VIBRATION
 _AUTOPILOT = px4.AUTOPILOT_COMPONENT
 _SCAN = frozenset((RETURNS, SCAN_END))
-#: What comes often and holds nothing that is kept here: not read.
-_NOT_READ = frozenset(
-    (
-        mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET,
-        mavlink.MAVLINK_MSG_ID_ATTITUDE,
-        mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT,
-        mavlink.MAVLINK_MSG_ID_VFR_HUD,
-        mavlink.MAVLINK_MSG_ID_ODOMETRY,
-        mavlink.MAVLINK_MSG_ID_ALTITUDE,
-        mavlink.MAVLINK_MSG_ID_HIGHRES_IMU,
-        mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE,
-        mavlink.MAVLINK_MSG_ID_ESTIMATOR_STATUS,
-        mavlink.MAVLINK_MSG_ID_SYSTEM_TIME,
-        mavlink.MAVLINK_MSG_ID_RC_CHANNELS,
-        mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT,
-        mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED,
-        mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW,
-        mavlink.MAVLINK_MSG_ID_ACTUATOR_OUTPUT_STATUS,
-    )
-)
 
 
 @dataclass
@@ -74,29 +55,41 @@ class VehicleStatus:
         """Its last STATUSTEXT in brackets; empty: there is none."""
         return f" ({self.texts[-1]})" if self.texts else ""
 
-    def heartbeat(self, autopilot: int, base_mode: int, custom_mode: int) -> None:
-        """Take the kind and the modes in a heartbeat of the autopilot."""
-        self.autopilot = autopilot
-        self.custom_mode = custom_mode
-        self.armed = bool(base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
-        self.offboard = custom_mode == px4.MODE_OFFBOARD
+    @property
+    def handlers(self) -> Mapping[int, Callable[[Any], None]]:
+        """Return what takes a message that reports a status, by message id."""
+        return {
+            mavlink.MAVLINK_MSG_ID_HEARTBEAT: self._on_heartbeat,
+            mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: self._on_extended_sys_state,
+            mavlink.MAVLINK_MSG_ID_SYS_STATUS: self._on_sys_status,
+            mavlink.MAVLINK_MSG_ID_VIBRATION: self._on_vibration,
+            mavlink.MAVLINK_MSG_ID_STATUSTEXT: self._on_statustext,
+        }
 
-    def handle(self, message: Message) -> None:
-        """Take what ``message`` reports, if it reports anything."""
-        if isinstance(message, mavlink.MAVLink_extended_sys_state_message):
-            self.landed_state = message.landed_state
-        elif isinstance(message, mavlink.MAVLink_sys_status_message):
-            present, health = message.onboard_control_sensors_present, message.onboard_control_sensors_health
-            if present & mavlink.MAV_SYS_STATUS_PREARM_CHECK:
-                self.prearm_ok = bool(health & mavlink.MAV_SYS_STATUS_PREARM_CHECK)
-            if present & mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY:
-                self.obstacle_sensing_valid = bool(health & mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY)
-        elif isinstance(message, mavlink.MAVLink_vibration_message):
-            self.clipping = message.clipping_0
-        elif isinstance(message, mavlink.MAVLink_statustext_message):
-            text = self._chunks.add(message.text, message.id, message.chunk_seq)
-            if text is not None:
-                self.texts.append(text)
+    def _on_heartbeat(self, message: mavlink.MAVLink_heartbeat_message) -> None:
+        if message.get_srcComponent() != _AUTOPILOT:
+            return
+        self.autopilot, self.custom_mode = message.autopilot, message.custom_mode
+        self.armed = bool(message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
+        self.offboard = message.custom_mode == px4.MODE_OFFBOARD
+
+    def _on_extended_sys_state(self, message: mavlink.MAVLink_extended_sys_state_message) -> None:
+        self.landed_state = message.landed_state
+
+    def _on_sys_status(self, message: mavlink.MAVLink_sys_status_message) -> None:
+        present, health = message.onboard_control_sensors_present, message.onboard_control_sensors_health
+        if present & mavlink.MAV_SYS_STATUS_PREARM_CHECK:
+            self.prearm_ok = bool(health & mavlink.MAV_SYS_STATUS_PREARM_CHECK)
+        if present & mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY:
+            self.obstacle_sensing_valid = bool(health & mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY)
+
+    def _on_vibration(self, message: mavlink.MAVLink_vibration_message) -> None:
+        self.clipping = message.clipping_0
+
+    def _on_statustext(self, message: mavlink.MAVLink_statustext_message) -> None:
+        text = self._chunks.add(message.text, message.id, message.chunk_seq)
+        if text is not None:
+            self.texts.append(text)
 
 
 @dataclass
@@ -124,6 +117,8 @@ class VehicleLink:
         self.statistics = LinkStatistics(settings.reordering_time)
         self.requests = Requests(system_id, self.status.parameters, settings)
         self.setpoints = SetpointStream(self.clock, self.status.parameters, settings)
+        self._handlers = {**self.status.handlers, **self.requests.handlers}
+        """What takes a message of the vehicle, by message id; others are not read."""
         self.received_at = -math.inf
         """Time of the last message of any kind."""
         self.attitude_received_at = -math.inf
@@ -177,13 +172,7 @@ class VehicleLink:
                 tc1, ts1, *_ = received.fields
                 if tc1:
                     self.clock.add_answer(ts1, now, tc1)
-            elif message_id not in _NOT_READ:
-                self._handle_message(received.message, component)
+            elif (handler := self._handlers.get(message_id)) is not None:
+                handler(received.message)
         # Without a stamp of its own it counts as sent with the datagram before.
         self.clock.queue.add(size, self.clock.bounds.sent, now)
-
-    def _handle_message(self, message: Message, component: int) -> None:
-        if component == _AUTOPILOT and isinstance(message, mavlink.MAVLink_heartbeat_message):
-            self.status.heartbeat(message.autopilot, message.base_mode, message.custom_mode)
-        self.status.handle(message)
-        self.requests.handle(message)

@@ -32,9 +32,12 @@ def test_version_and_list_are_requested_once_where_all_is_answered(requests):
     version, listed = requests.due(1.0)
     assert (version.command, version.param1, version.target_system) == (512, 148.0, 3)
     assert (listed.get_type(), listed.target_system, listed.target_component) == (LIST, 3, 1)
-    requests.handle(mavlink.MAVLink_param_value_message(b"_HASH_CHECK", 0.0, mavlink.MAV_PARAM_TYPE_UINT32, 4, 0xFFFF))
-    for message in (VERSION, *map(value, range(4))):
-        requests.handle(message)
+    requests.take_value(
+        mavlink.MAVLink_param_value_message(b"_HASH_CHECK", 0.0, mavlink.MAV_PARAM_TYPE_UINT32, 4, 0xFFFF)
+    )
+    requests.take_version(VERSION)
+    for index in range(4):
+        requests.take_value(value(index))
     requests.want()
     assert [requests.due(1.0 + k * RETRY) for k in range(1, 30)] == [[]] * 29
 
@@ -42,13 +45,14 @@ def test_version_and_list_are_requested_once_where_all_is_answered(requests):
 def test_what_was_lost_is_requested_again(requests):
     requests.due(1.0)
     assert kinds(requests.due(1.0 + RETRY)) == [COMMAND, LIST]
-    for message in (VERSION, value(0), value(2)):
-        requests.handle(message)
+    requests.take_version(VERSION)
+    for index in (0, 2):
+        requests.take_value(value(index))
     assert requests.due(1.0 + 2 * RETRY) == []  # the list is on its way
     asked = requests.due(1.0 + 3 * RETRY)
     assert kinds(asked) == [READ, READ] and [message.param_index for message in asked] == [1, 3]
-    requests.handle(value(3))
-    requests.handle(value(1))
+    requests.take_value(value(3))
+    requests.take_value(value(1))
     assert [requests.due(1.0 + k * RETRY) for k in range(4, 30)] == [[]] * 26
 
 
@@ -60,6 +64,6 @@ def test_vehicle_that_does_not_answer_is_left_alone_after_some_tries(requests):
 
 
 def test_forged_number_of_parameters_ends_too(requests):
-    requests.handle(value(0, 0xFFFF))
+    requests.take_value(value(0, 0xFFFF))
     sent = [requests.due(1.0 + k * RETRY) for k in range(50)]
     assert max(map(len, sent)) <= 21 and not any(sent[SETTINGS.tries + 1 :])

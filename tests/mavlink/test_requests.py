@@ -29,9 +29,9 @@ def test_parameter_is_requested_at_once_and_again_until_it_is_known():
     requests.want_parameters(("WANTED",))
     assert requests.due(5.0 + 0.9 * RETRY) == []
     assert len(requests.due(5.0 + 1.1 * RETRY)) == 1
-    requests.handle(value_of("WANTED", float("nan")))
+    requests.take_value(value_of("WANTED", float("nan")))
     assert len(requests.due(5.0 + 2.2 * RETRY)) == 1
-    requests.handle(value_of("WANTED", 2.5))
+    requests.take_value(value_of("WANTED", 2.5))
     assert known["WANTED"] == 2.5
     assert requests.due(100.0) == []
 
@@ -44,7 +44,7 @@ def test_command_is_repeated_with_its_number_of_tries_until_it_counts_as_unanswe
         (3, ARM, 1.0, 0.0)
     }
     assert command.state is CommandState.UNANSWERED
-    requests.handle(mavlink.MAVLink_command_ack_message(ARM, mavlink.MAV_RESULT_ACCEPTED))
+    requests.take_acknowledgement(mavlink.MAVLink_command_ack_message(ARM, mavlink.MAV_RESULT_ACCEPTED))
     assert command.state is CommandState.UNANSWERED
 
 
@@ -59,6 +59,6 @@ def test_command_is_repeated_with_its_number_of_tries_until_it_counts_as_unanswe
 def test_answer_ends_its_own_command(requests, result, state):
     other, command = requests.command(ARM + 1), requests.command(ARM, 1.0)
     requests.due(0.0)
-    requests.handle(mavlink.MAVLink_command_ack_message(ARM, result))
+    requests.take_acknowledgement(mavlink.MAVLink_command_ack_message(ARM, result))
     assert (command.state, other.state) == (state, CommandState.PENDING)
     assert len(requests.due(2.0 * RETRY)) == (2 if state is CommandState.PENDING else 1)

@@ -26,7 +26,7 @@ def complete(system_id, address):
     link.received_at = link.attitude_received_at = link.position_received_at = link.payload_received_at = NOW
     link.status.parameters.update(dict.fromkeys(PARAMETERS, 1.0))
     link.status.prearm_ok = False
-    link.status.heartbeat(mavlink.MAV_AUTOPILOT_PX4, 0, 0)
+    link.status.autopilot = mavlink.MAV_AUTOPILOT_PX4
     link.status.landed_state = mavlink.MAV_LANDED_STATE_ON_GROUND
     link.clock.add_answer(link.clock.request(NOW), NOW + 0.01)
     return link
@@ -86,7 +86,7 @@ def test_all_that_vehicles_lack_is_named_at_once_and_vehicles_that_lack_the_same
 
 
 def test_modes_of_another_autopilot_are_not_taken_for_those_of_px4(links):
-    links[0].status.heartbeat(mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, 0, 0)
+    links[0].status.autopilot = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
     assert connected(links) == "vehicle 4 has not sent HEARTBEAT of MAV_AUTOPILOT_PX4"
 
 
