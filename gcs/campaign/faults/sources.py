@@ -26,7 +26,7 @@ _PARTS_OF_FAMILIES = {"link": LINK, "timing": CLOCK, "values": NAVIGATION, "sens
 _CODES: dict[tuple[str, ...], str] = {
     (LINK,): "link_latency link_jitter link_congestion messages_lost messages_reordered messages_duplicated "
     "messages_corrupted setpoints_lost all_telemetry_lost telemetry_lost link_latency_exceeded link_unfit "
-    "offboard_left",
+    "autopilot_unfit offboard_left",
     (CLOCK,): "clock_error",
     (NAVIGATION,): "stuck_sensor channel_isolated inconsistent_state measurements_rejected innovation_bias "
     "innovation_noise sensor_noise states_unknown telemetry_incomplete",
