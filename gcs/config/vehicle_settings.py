@@ -75,7 +75,7 @@ class HoldSettings(SettingsTable):
     vertical_kp: float = 3.2  # 1/s2; altitude gain
     vertical_kd: float = 4.5  # 1/s; vertical velocity gain
     horizontal_max: float = 0.35  # g; largest horizontal acceleration
-    vertical_max: float = 0.35  # g; largest vertical acceleration
+    vertical_max: float = 0.35  # g; largest acceleration upwards; the least thrust bounds it downwards
     step_max: float = 0.1  # s; longest time between samples that the integral covers
     descent_ramp: float = 1.0  # s; until a descent has reached its speed
     land_speed: float = setting(0.5, "m/s", "MPC_LAND_SPEED: speed of the descent", ge=0.1, le=1.0)

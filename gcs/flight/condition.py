@@ -108,8 +108,6 @@ class Trigger:
     """For the operator: what is wrong, the value, the limit."""
     vehicles: tuple[int, ...] = ()
     """Indices of the vehicles (0 .. N-1) that are its cause; empty: the whole team."""
-    cut_off: float = 0.0
-    """Time for which the vehicle has most likely received no message (s)."""
     source: str = "team"
     """Source of the alarm where the cause is not one vehicle."""
 

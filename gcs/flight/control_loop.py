@@ -16,10 +16,6 @@ from idc_controller.estimation.measurements import Estimate
 from idc_controller.trajectory.stop_plan import Braking, StopPlan, stop_plan
 from idc_controller.trajectory.trajectory import Trajectory
 
-STOP_PLANS = 100
-"""Control steps whose stop plans are kept; more than a vehicle flies without set-points."""
-STAMP_TOLERANCE = 0.01  # s
-
 
 class Setpoints(NamedTuple):
     """Set-points of all vehicles: unit thrust directions (N, 3), NED, and thrusts (N,) (N)."""
@@ -66,9 +62,13 @@ class ControlLoop:
         """``brake``: the stop of a vehicle without set-points, see :mod:`idc_controller.trajectory.stop_plan`."""
         self.estimator, self.controller = estimator, controller
         self.compute_times, self._brake = compute_times, brake
-        self._stop_plans: deque[StopPlan] = deque(maxlen=STOP_PLANS)
-        self.stop_plan: StopPlan | None = None
-        """Stop of all vehicles when set-points are lost; it goes out with the set-points."""
+        self.stop_plans: deque[StopPlan] = deque()
+        """Of the control steps since the last set-points that all vehicles have received; the first one goes out."""
+
+    @property
+    def stop_plan(self) -> StopPlan | None:
+        """Stop of all vehicles when set-points are lost; it goes out with the set-points. None: not flying yet."""
+        return self.stop_plans[0] if self.stop_plans else None
 
     def estimate(self, effective: float, trajectory: Trajectory) -> Estimate:
         """Return the estimate at ``effective`` (s), about ``trajectory``."""
@@ -88,21 +88,15 @@ class ControlLoop:
     def send(self, record: StepRecord, effective: float, leaves: Array, hold: Hold = _HOLD) -> None:
         """Take over the set-points of a step in the air, which leave at ``leaves`` (N,) and act at ``effective``.
 
-        The time of descent in the stop plan goes on only with what every vehicle is known to have received. So a
-        vehicle that is cut off, and all that are later, have times that differ by a round trip of the links at most,
-        whichever plan each of them received last.
+        The stop plan goes on only with what every vehicle is known to have received. So a vehicle that is cut off, and
+        all that are later, have plans that differ by a round trip of the links at most, whichever each received last.
         """
         self.compute_times.lap(Part.MONITORING)
         self.estimator.setpoints.add(effective, record.decision.u, leaves)
-        self.stop_plan = stop_plan(
-            self.controller.parameters, record.decision.flat, effective, record.estimate.x, self._brake
-        )
+        plan = stop_plan(self.controller.parameters, record.decision.flat, effective, record.estimate.x, self._brake)
+        plans = self.stop_plans
+        plans.append(plan._replace(descent=effective + hold.duration))
         received = self.estimator.setpoints.received_by_all(effective, hold.unconfirmed_max)
-        self.stop_plan = self.stop_plan._replace(descent=received + hold.duration)
-        self._stop_plans.append(self.stop_plan)
+        while len(plans) > 1 and plans[1].start <= received:
+            plans.popleft()
         self.compute_times.lap(Part.STOP_PLAN)
-
-    def choose_stop_plan(self, sent_until: float) -> None:
-        """Take the last stop plan that a vehicle has received which was sent everything until ``sent_until`` (s)."""
-        received = [plan for plan in self._stop_plans if plan.start <= sent_until + STAMP_TOLERANCE]
-        self.stop_plan = received[-1] if received else self.stop_plan

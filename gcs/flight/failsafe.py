@@ -165,15 +165,14 @@ def _all_telemetry_lost(system: System, moment: Moment) -> Trigger | None:
     for link in system.team.links:
         if moment.now - link.telemetry_received_at <= timeout:
             return None
-    return Trigger(f"no vehicle sends telemetry for {timeout:g} s", cut_off=timeout)
+    return Trigger(f"no vehicle sends telemetry for {timeout:g} s")
 
 
 def _telemetry_lost(system: System, moment: Moment) -> Trigger | None:
     timeout = system.settings.telemetry_timeout
     for i, link in enumerate(system.team.links):
-        age = moment.now - link.telemetry_received_at
-        if age > timeout:
-            return Trigger(f"vehicle {link.system_id} sends no telemetry for {timeout:g} s", (i,), age)
+        if moment.now - link.telemetry_received_at > timeout:
+            return Trigger(f"vehicle {link.system_id} sends no telemetry for {timeout:g} s", (i,))
     return None
 
 
@@ -185,16 +184,15 @@ def _link_latency_exceeded(system: System, moment: Moment) -> Trigger | None:
             latency = max(latency, clock.least_delay(window, moment.now))
         if latency > limit:
             text = f"link latency to vehicle {link.system_id} is {latency * 1e3:.0f} ms (limit {limit * 1e3:.0f} ms)"
-            return Trigger(text, (i,), latency)
+            return Trigger(text, (i,))
     return None
 
 
 def _offboard_left(system: System, moment: Moment) -> Trigger | None:
     for i, link in enumerate(system.team.links):
         if not link.status.offboard:
-            mode, cut_off = px4.mode_name(link.status.custom_mode), link.status.parameters[px4.PARAM_SETPOINT_LOSS]
-            reason = f"vehicle {link.system_id} has left OFFBOARD for {mode}{link.status.last_text}"
-            return Trigger(reason, (i,), cut_off + link.clock.delay)
+            mode = px4.mode_name(link.status.custom_mode)
+            return Trigger(f"vehicle {link.system_id} has left OFFBOARD for {mode}{link.status.last_text}", (i,))
     return None
 
 

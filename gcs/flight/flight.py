@@ -124,8 +124,6 @@ class Flight:
         elif reaction in (Reaction.BRAKE_AND_LAND, Reaction.AUTONOMOUS_LANDING):
             self._brake_and_land(time)
             if reaction is Reaction.AUTONOMOUS_LANDING:
-                # A vehicle that is cut off follows the last stop plan that it has received: all the others do the same.
-                self.control.choose_stop_plan(time - trigger.cut_off)
                 self._sequence = AutonomousLanding(self.system.team, time, self._settings)
                 self.phase = Phase.AUTONOMOUS_LANDING
 

@@ -85,10 +85,10 @@ class FlightRecorder(ExitStack):
         self._innovations.record(control.estimator, estimate, time)
         if flight.phase in IN_AIR:
             self._write_plan(estimate.time, decision)
-        if control.stop_plan is not None and control.stop_plan.start == estimate.time:
+        if control.stop_plans and control.stop_plans[-1].start == estimate.time:
             chain, parameters = flight.mission.system.safety.planner.chain, control.controller.parameters
             trajectory = decision.reference.trajectory
-            self._horizon.record(estimate.time, trajectory, control.stop_plan, chain, parameters)
+            self._horizon.record(estimate.time, trajectory, control.stop_plans[-1], chain, parameters)
 
     def _write_plan(self, time: float, decision: Decision) -> None:
         position, _, acceleration = decision.flat.payload[:3, 0].tolist()

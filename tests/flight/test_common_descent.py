@@ -82,9 +82,7 @@ class Team:
                 self.ground.estimator.setpoints.confirm(i, self.now - STEP, self.now, reported, 0.0)
         silent = [(self.step - heard) * STEP for heard in self.heard]
         if self.flying and (max(silent) > LOSS or not all(self.offboard)):
-            cut_off = max(silent) if max(silent) > LOSS else LOSS + LINK * STEP
             self.flying, self.landing_at = False, self.step + round(LAND_DELAY / STEP)
-            self.ground.choose_stop_plan(self.now - cut_off)
             self.send("plan", self.ground.stop_plan)
             self.send("mode", px4.MODE_HOLD)
         if self.flying:
@@ -140,8 +138,11 @@ def hovering(monkeypatch):
 @pytest.mark.parametrize("second", [(GROUND, None), (COMMANDS, 2), (TELEMETRY, 2), (BOTH, 2)])
 @pytest.mark.parametrize("first", [COMMANDS, TELEMETRY, BOTH])
 def test_all_vehicles_descend_together_whatever_is_lost_first_and_second(first, second, delay):
-    times = Team([(first, 1, FIRST), (*second, None if delay is None else FIRST + delay)]).run()
+    team = Team([(first, 1, FIRST), (*second, None if delay is None else FIRST + delay)])
+    times = team.run()
     assert None not in times, times
+    starts = [pilot.state.hold.plan.start for pilot in team.pilots]
+    assert max(starts) - min(starts) <= BOUND + 1e-9, starts
     assert max(times) - min(times) <= BOUND + 1e-9, times
     assert FIRST * STEP + LAND_DELAY - LOSS < min(times) < FIRST * STEP + LAND_DELAY + 2.0 * LOSS + BOUND
 

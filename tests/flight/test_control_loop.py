@@ -10,7 +10,7 @@ from test_control_step import AT_REST, HOVER, LAYOUT, MODEL, REST, SYSTEM, N, P,
 
 from gcs.flight import stack
 from gcs.flight.compute_times import ComputeTimes, Part
-from gcs.flight.control_loop import STOP_PLANS, ControlLoop, Setpoints, StepRecord
+from gcs.flight.control_loop import ControlLoop, Hold, Setpoints, StepRecord
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.setpoints import attitude_target
@@ -110,24 +110,24 @@ def test_stop_plan_goes_out_with_the_setpoints_and_brakes_as_asked():
     assert usual.stop_plan.control_points[:, 0] == pytest.approx(formation, abs=1e-3)
 
 
-def test_vehicles_cut_off_follow_the_last_stop_plan_that_all_have_received():
+def test_stop_plan_goes_on_only_with_what_all_vehicles_have_received(monkeypatch):
     loop = control_loop()
-    loop.choose_stop_plan(10.0)
     assert loop.stop_plan is None
     record = loop.decide(estimated(), REST, on_ground=False, learn_load=False)
-    times = [PERIOD * k for k in range(STOP_PLANS + 5)]
-    for time in times:
-        loop.send(record, time, np.full(N, time))
-    assert loop.stop_plan.start == times[-1]
-    loop.choose_stop_plan(times[-3] + 0.005)
-    assert loop.stop_plan.start == times[-3]
-    loop.choose_stop_plan(times[-2] - 0.005)  # stamps on the wire are whole milliseconds
-    assert loop.stop_plan.start == times[-2]
-    loop.choose_stop_plan(times[6] - 0.02)
-    assert loop.stop_plan.start == times[5]
-    # Of those before, none is kept: the last choice stays.
-    loop.choose_stop_plan(times[2])
-    assert loop.stop_plan.start == times[5]
+    hold = Hold(5.0, 0.9)
+    times = [PERIOD * k for k in range(12)]
+
+    def send(time, received):
+        monkeypatch.setattr(loop.estimator.setpoints, "received_by_all", lambda effective, age_max: received)
+        loop.send(record, time, np.full(N, time), hold)
+        return loop.stop_plan.start, loop.stop_plan.descent
+
+    assert send(times[0], times[0]) == (times[0], times[0] + hold.duration)
+    assert send(times[1], times[0]) == (times[0], times[0] + hold.duration)
+    assert [send(time, times[1])[0] for time in times[2:8]] == [times[1]] * 6
+    assert loop.stop_plans[-1].start == times[7]  # kept for later
+    assert send(times[8], times[5] + 0.2 * PERIOD) == (times[5], times[5] + hold.duration)
+    assert send(times[9], times[9])[0] == times[9]
 
 
 def test_load_is_learnt_in_the_air_where_it_is_clear():

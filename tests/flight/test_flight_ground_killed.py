@@ -80,8 +80,9 @@ def check_set_down(summary, truth):
     assert all(truth[f"uav{i}_thrust_n"][-1] < 0.5 for i in range(1, 5)), "rotors still turn"
 
 
-def test_vehicle_lost_and_then_the_ground(tmp_path):
-    check_set_down(*flown(tmp_path, speed=1.5, lost_before=1.5))
+@pytest.mark.parametrize(("speed", "lost_before"), [(1.5, 0.3), (1.5, 1.5), (3.0, 0.4)])
+def test_vehicle_lost_and_then_the_ground(tmp_path, speed, lost_before):
+    check_set_down(*flown(tmp_path, speed=speed, lost_before=lost_before))
 
 
 @pytest.mark.parametrize("delay", [0.8, 1.2])

@@ -25,15 +25,14 @@ ARM, MODE = mavlink.MAV_CMD_COMPONENT_ARM_DISARM, mavlink.MAV_CMD_DO_SET_MODE
 
 
 class Watched(Flight):
-    """A flight that keeps the commands to the team and the choices of stop plans."""
+    """A flight that keeps the commands to the team."""
 
     def __init__(self, phase):
-        self.commands, self.chosen = [], []
+        self.commands = []
         team = SimpleNamespace(links=(), command_all=lambda *command: self.commands.append(command))
         control = SimpleNamespace(
-            estimator=None, controller=SimpleNamespace(parameters=PARAMETERS, guidance=Guidance()),
-            choose_stop_plan=self.chosen.append,
-        )  # fmt: skip
+            estimator=None, controller=SimpleNamespace(parameters=PARAMETERS, guidance=Guidance())
+        )
         super().__init__(MISSION, team, control, AlarmLog(), stack.obstacle_map(MISSION))
         self.phase = phase
         if phase in (Phase.CLIMB, Phase.FLY, Phase.LAND):
@@ -63,18 +62,17 @@ def test_vehicles_still_on_the_ground_are_disarmed(phase):
 def test_interrupted_flight_brakes_and_lands_under_control(phase):
     undisturbed, flight = Watched(phase), Watched(phase)
     flight.fails(Failsafe.INTERRUPTED)
-    assert (flight.phase, flight.commands, flight.chosen) == (phase, [], [])
+    assert (flight.phase, flight.commands) == (phase, [])
     assert flight.expected_end < undisturbed.expected_end or math.isinf(undisturbed.expected_end)
     path = flight.mission_trajectory.trajectory.derivatives(np.linspace(5.0, 60.0, 200), 0)[0]
     assert np.ptp(path[:, :2], axis=0).max() < 2.0
 
 
 @pytest.mark.parametrize("phase", [Phase.FLY, Phase.SPOOL_DOWN])
-def test_lost_vehicle_lands_all_by_the_stop_plan_that_it_has(phase):
+def test_lost_vehicle_lands_all(phase):
     flight = Watched(phase)
-    flight.fails(Failsafe.TELEMETRY_LOST, vehicles=(), cut_off=0.3)
+    flight.fails(Failsafe.TELEMETRY_LOST, vehicles=())
     assert flight.phase is Phase.AUTONOMOUS_LANDING
-    assert flight.chosen == [pytest.approx(4.7)]
     assert flight.commands == [
         (MODE, mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, px4.MainMode.AUTO, px4.AutoMode.LOITER)
     ]

@@ -11,7 +11,7 @@ LOST = 8.0  # s after take-off: in the hold
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("change", [-2.0, pytest.param(1.0, marks=pytest.mark.long)])
+@pytest.mark.parametrize("change", [-2.0, -2.9, pytest.param(1.0, marks=pytest.mark.long)])
 def test_vehicles_set_down_a_payload_of_another_mass_without_ground(tmp_path, change: float) -> None:
     system_file(tmp_path)
     mission = tmp_path / "hop.toml"

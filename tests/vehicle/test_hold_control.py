@@ -61,7 +61,7 @@ class PlainHold:
         level = wanted[2][:2] + GAINS.horizontal_kp * error[:2] + GAINS.horizontal_kd * drift[:2]
         level = bounded(level + (0.0 if supported else integral), GAINS.horizontal_max * G)
         up = wanted[2][2] + GAINS.vertical_kp * error[2] + GAINS.vertical_kd * drift[2]
-        up = np.clip(up, -GAINS.vertical_max * G, GAINS.vertical_max * G)
+        up = np.clip(up, -GAINS.vertical_max * G, (1.0 - LEAST / HOVER) * G)
         return carried / G * np.array([*level, up - G])
 
 
@@ -95,10 +95,10 @@ def test_vehicle_at_its_place_hovers_with_the_yaw_of_the_plan():
 @pytest.mark.parametrize(("aside", "down"), [((50.0, 0.0), 0.0), ((-30.0, 40.0), 0.0), ((0.0, 0.0), -50.0)])
 def test_far_from_its_place_acceleration_is_at_its_limit_towards_it(aside, down):
     position = np.add(HERE, (*aside, down))
-    force = force_of(HoldController(STAY, HOVER, 0.0, G, GAINS).command(measured(position), 0.0)) / HOVER
+    force = force_of(HoldController(STAY, HOVER, LEAST, G, GAINS).command(measured(position), 0.0)) / HOVER
     size = np.hypot(*aside)
     level = np.zeros(2) if size == 0.0 else -GAINS.horizontal_max * np.array(aside) / size
-    vertical = -1.0 + (GAINS.vertical_max if down < 0.0 else 0.0)
+    vertical = -LEAST / HOVER if down < 0.0 else -1.0
     np.testing.assert_allclose(force, [*level, vertical], atol=1e-9)
 
 

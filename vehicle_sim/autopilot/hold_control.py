@@ -121,6 +121,7 @@ class HoldController:
         self.plan = plan
         self._hover_thrust = hover_thrust
         self._thrust_min = thrust_min
+        self._up_min = min(thrust_min / hover_thrust, 1.0) * g
         self._g = g
         self._settings = settings
         self._integral_x = 0.0
@@ -165,8 +166,7 @@ class HoldController:
         if size > gains.horizontal_max * g:
             a_x, a_y = a_x * gains.horizontal_max * g / size, a_y * gains.horizontal_max * g / size
         a_z = acceleration[2] + gains.vertical_kp * (position[2] - z) + gains.vertical_kd * (velocity[2] - v_z)
-        a_z = min(max(a_z, -gains.vertical_max * g), gains.vertical_max * g)
-
-        up = g - a_z
+        # Downwards as far as the least thrust allows: of a load that was lost, the learned thrust still carries all.
+        up = min(max(g - a_z, self._up_min), (1.0 + gains.vertical_max) * g)
         thrust = carried / g * math.sqrt(a_x * a_x + a_y * a_y + up * up)
         return attitude_of_force(a_x, a_y, -up, self.plan.yaw), max(thrust, self._thrust_min)
