@@ -58,8 +58,8 @@ class Recorder:
     def __getattr__(self, name: str) -> Any:
         def call(*arguments: Any) -> Answer:
             *others, last = arguments
-            if isinstance(last, bool):  # arm and disarm: the time is before it
-                others = [*others[:-1], last]
+            if isinstance(last, bool):  # arm and disarm: sender and time are before it
+                others = [last]
             self.calls.append((name, *others))
             return self.answer
 

@@ -47,6 +47,18 @@ def test_controlled_vehicle_refuses_commands_of_foreign_systems(flying: Bench) -
     assert flying.result(command(512, mavlink.MAVLINK_MSG_ID_HOME_POSITION), STRANGER) == ACCEPTED
 
 
+def test_silence_of_the_ground_lets_no_other_stop_the_rotors_in_the_air(flying: Bench) -> None:
+    flying.streaming = {}
+    flying.run(1.5)
+    assert flying.vehicle.autopilot.failsafe
+    for kill in (command(400, 0, px4.FORCE_ARM_DISARM), command(185, 1)):
+        assert flying.result(kill, STRANGER) == DENIED
+    assert "another ground flies it" in flying.got("STATUSTEXT", STRANGER)[-1].text
+    assert flying.vehicle.autopilot.armed
+    assert flying.result(command(400, 0, px4.FORCE_ARM_DISARM)) == ACCEPTED
+    assert not flying.vehicle.autopilot.armed
+
+
 def test_foreign_system_at_ground_address_cannot_stop_telemetry(flying: Bench) -> None:
     stop = command(511, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, -1)
     assert flying.result(stop, GROUND, 42) == DENIED

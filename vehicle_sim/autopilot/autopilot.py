@@ -67,6 +67,11 @@ class Autopilot:
         return self.state.armed
 
     @property
+    def is_flying(self) -> bool:
+        """Return True if it is armed, and in the air."""
+        return self.state.armed and self.state.land.in_air
+
+    @property
     def failsafe(self) -> bool:
         """Return True if the vehicle flies otherwise than it was commanded."""
         return self.state.failsafe
@@ -130,7 +135,7 @@ class Autopilot:
 
     def disarm(self, force: bool = False) -> Answer:
         """Stop the rotors, in the air only with ``force``."""
-        if self.state.armed and self.state.land.in_air and not force:
+        if self.is_flying and not force:
             return denied("Disarming denied: in the air")
         self.state.stop()
         self._decide_anew()

@@ -28,7 +28,7 @@ class SimulatedAircraft:
         """See :meth:`.Autopilot.arm`."""
         return self._autopilot.arm(now, force)
 
-    def disarm(self, now: float, force: bool = False) -> Answer:
+    def disarm(self, sender: Sender, now: float, force: bool = False) -> Answer:
         """See :meth:`.Autopilot.disarm`."""
         return self._autopilot.disarm(force)
 
@@ -46,6 +46,12 @@ class CoupledAircraft(SimulatedAircraft):
     """Those of sticks on the ground only."""
     obeys_broadcasts = False
     """One that missed the command would be left behind by the others."""
+
+    def disarm(self, sender: Sender, now: float, force: bool = False) -> Answer:
+        """Disarm; in the air only for the ground that flies it, or did last: its silence gives no other the right."""
+        if self._autopilot.is_flying and self._owner.owner not in (None, sender):
+            return denied("Disarming denied: another ground flies it")
+        return super().disarm(sender, now, force)
 
     def take_off(self, altitude: float, now: float) -> Answer:
         """Refuse."""

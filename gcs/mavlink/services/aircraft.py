@@ -82,8 +82,8 @@ class Aircraft(Protocol):
     def arm(self, now: float, force: bool = False) -> Answer:
         """Arm; ``force`` skips what checks may be skipped."""
 
-    def disarm(self, now: float, force: bool = False) -> Answer:
-        """Disarm, in the air only with ``force``."""
+    def disarm(self, sender: Sender, now: float, force: bool = False) -> Answer:
+        """Disarm for ``sender``, in the air only with ``force``."""
 
     def enter_mode(self, custom_mode: int, sender: Sender, now: float) -> Answer:
         """Enter one of PX4's custom modes for ``sender``."""

@@ -60,13 +60,13 @@ class FlightCommands:
         if message.param1 == 1.0:
             return self._aircraft.arm(request.now, force)
         if message.param1 == 0.0:
-            return self._aircraft.disarm(request.now, force)
+            return self._aircraft.disarm(request.sender, request.now, force)
         return denied(f"Arming denied: param1 {message.param1} is neither 0 nor 1", 1)
 
     def _terminate(self, message: Command, request: Request) -> Answer:
         """Stop the rotors at once, in the air, too (param1 1); 0 does nothing."""
         if message.param1 == 1.0:
-            return self._aircraft.disarm(request.now, True)
+            return self._aircraft.disarm(request.sender, request.now, True)
         return ACCEPTED if message.param1 == 0.0 else denied(f"Termination denied: param1 {message.param1:g}", 1)
 
     def _take_off(self, message: Command, request: Request) -> Answer:
