@@ -46,12 +46,12 @@ class Reaction(IntEnum):
     # fmt: on
 
     def in_phase(self, phase: Phase) -> Reaction:
-        """Return the reaction where ``phase`` allows it: on the ground there is nothing to land."""
+        """Return the reaction in ``phase``: on the ground there is nothing to land."""
         if self is Reaction.END_CONTROL:
             return self
         if phase in (Phase.CONNECT, Phase.CHECK):
             return Reaction.REFUSE
-        return Reaction.DISARM if phase in (Phase.ARM, Phase.SPOOL_UP) else self
+        return Reaction.DISARM if phase in (Phase.ARM, Phase.SPOOL_UP, Phase.DISARM) else self
 
 
 class Check(Enum):
