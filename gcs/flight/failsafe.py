@@ -110,6 +110,10 @@ def _autopilot_unfit(system: System, moment: Moment) -> Trigger | None:
     for i, link in enumerate(links):
         if lacking := missing(link, -math.inf, at_connect=False):
             return Trigger(f"vehicle {link.system_id} has not sent {', '.join(lacking)}", (i,))
+    if (wrong := preflight.wrong_clock) is not None:
+        link, rate = wrong
+        text = f"the clock of vehicle {link.system_id} goes {rate:.2f} s a second: simulate at the ground's --speed"
+        return Trigger(text, tuple(i for i, each in enumerate(links) if each is link))
     if (slow := preflight.slow_source(system.control_interval)) is None:
         return None
     source, interval = slow
@@ -341,7 +345,8 @@ class Failsafe(AlarmCode):
         "a vehicle is more than {placement_tolerance} m from its place over the payload")
     AUTOPILOT_UNFIT = (Check.PREFLIGHT, _autopilot_unfit, Reaction.REFUSE,
         "see docs/autopilots.md; set its message intervals, or reduce `rates.control`",
-        "before arming, a vehicle does not answer TIMESYNC, or positions come less often than set-points are sent")
+        "before arming, a vehicle does not answer TIMESYNC, its clock goes at another rate, or its positions come less "
+        "often than set-points are sent")
     LINK_UNFIT = (Check.PREFLIGHT, _link_unfit, Reaction.REFUSE,
         "reduce its message rates, or use a faster link; of a simulation on a busy machine lower `--speed`",
         "before arming, datagrams of one vehicle usually take more than {latency_limit} s one way")

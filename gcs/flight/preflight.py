@@ -17,6 +17,8 @@ _MEASURED = 15
 """Datagrams by which its rate is measured."""
 _STAMP = 1e-3
 """Resolution of the stamps of telemetry (s)."""
+_RATE_ERROR = 0.2
+"""Of a clock, beyond what jitter makes of the settle time: a simulation that runs at another speed."""
 
 
 class Preflight:
@@ -32,6 +34,8 @@ class Preflight:
         """Whole seconds for which the first vehicle had been up when the ground began: team time counts them."""
         self.missing = ""
         """Vehicles that have not connected, else all that those which have lack of what a flight needs; empty: none."""
+        self._stamps: list[tuple[float, float] | None] = []
+        """Of each vehicle when all had connected: the newest stamp, and its arrival (s)."""
         self._newest: dict[int, float] = {}
         """Time (s, team) of the newest position of each source."""
         self._intervals: dict[int, float] = {}
@@ -62,6 +66,7 @@ class Preflight:
         if not self.missing:
             for link in self._team.links:
                 link.requests.want_log()
+            self._stamps = [link.clock.newest for link in self._team.links]
         return not self.missing
 
     def add(self, measurement: Measurement) -> None:
@@ -81,8 +86,21 @@ class Preflight:
         checked = time - self.check_start
         if not checked >= self._settings.takeoff_landing.settle_time:
             return False
+        if self.wrong_clock is not None and checked <= self._settings.failsafe.connect_timeout:
+            return False  # one that was held up for a moment catches up
         few = any(self.queues(link) and len(link.clock.queue) < _MEASURED for link in self._team.links)
         return not few or checked > self._settings.failsafe.connect_timeout
+
+    @property
+    def wrong_clock(self) -> tuple[VehicleLink, float] | None:
+        """The first vehicle whose clock does not go as the ground's, with its seconds a second; None: all do."""
+        for link, first in zip(self._team.links, self._stamps, strict=False):
+            if first is None or (newest := link.clock.newest) is None or newest[1] <= first[1]:
+                continue
+            rate = (newest[0] - first[0]) / (newest[1] - first[1])
+            if abs(rate - 1.0) > _RATE_ERROR:
+                return link, rate
+        return None
 
     def queues(self, link: VehicleLink) -> bool:
         """Return whether datagrams of a vehicle wait for each other, as on a link that hardly carries them."""

@@ -35,6 +35,8 @@ class RemoteClock:
         self._leads: deque[list[float]] = deque(maxlen=settings.slices)  # [beginning of the slice, greatest lead in it]
         self._lead = -math.inf
         self._newest = -math.inf
+        self.newest: tuple[float, float] | None = None
+        """The last stamp in order (s, vehicle), without steps of the clock, and its arrival (s, ground)."""
         self.set_back = 0.0
         """Sum of all steps back (s)."""
         self.jumped_at = -math.inf
@@ -62,6 +64,7 @@ class RemoteClock:
             self._leads.clear()
         if in_order:
             self._newest = boot_time
+            self.newest = boot_time + self.set_back, arrival
         if not self._leads or arrival - self._leads[-1][0] >= self._settings.slice:
             self._leads.append([arrival, lead])
             self._lead = max(greatest for _, greatest in self._leads)

@@ -181,3 +181,25 @@ def test_interval_of_positions_is_the_shortest_of_each_source(links):
     assert preflight.slow_source(0.08) is None
     assert preflight.slow_source(0.05) == (1, pytest.approx(0.08))
     assert preflight.slow_source(0.039)[0] == 1
+
+
+@pytest.mark.parametrize(("rate", "jitter", "is_wrong"), [(1.0, 0.02, False), (0.5, 0.0, True), (2.0, 0.02, True)])
+def test_clock_of_a_simulation_at_another_speed_is_waited_for_and_then_named(links, rate, jitter, is_wrong):
+    def stamp(now):
+        for i, link in enumerate(links):
+            arrival = now + jitter * abs(np.sin(40.0 * now))
+            link.clock.add_stamp(100.0 + (rate if i else 1.0) * (now - NOW), arrival, in_order=True)
+
+    preflight = Preflight(SimpleNamespace(links=links))
+    stamp(NOW)
+    assert preflight.connect(NOW)
+    preflight.check_start = NOW
+    for k in range(1, 16):
+        stamp(NOW + 0.04 * k)
+    assert preflight.is_settled(NOW + 0.6) is not is_wrong
+    if is_wrong:
+        link, found = preflight.wrong_clock
+        assert link is links[1] and found == pytest.approx(rate, rel=0.05)
+        assert preflight.is_settled(NOW + 1.01 * DEFAULTS.failsafe.connect_timeout)
+    else:
+        assert preflight.wrong_clock is None
