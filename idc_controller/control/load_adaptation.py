@@ -25,17 +25,21 @@ class LoadAdaptation:
         )
 
     def release(self) -> None:
-        """Let links that lean against the wind come upright: the ground holds the payload."""
+        """Let links that lean against the wind come upright: the ground holds the payload, whose weight stays."""
         share = self.settings.period / self.settings.upright_time_constant
         load = self.estimate
         drag, uav_drag = _drag(load.air, np.zeros(3))
-        self.estimate = Load(load.mass, (1.0 - share) * (load.force + drag), load.uav_force + uav_drag)
+        force = load.force + drag
+        force[:2] *= 1.0 - share
+        self.estimate = Load(load.mass, force, load.uav_force + uav_drag)
 
     def learn(self, estimate: Estimate) -> None:
         """Follow the disturbance forces and the mass excess of ``estimate``."""
         load = self.estimate
         share = self.settings.period / self.settings.load_time_constant
+        least, most = self.settings.mass_share
         mass = load.mass + share * (self.parameters.m_0 + estimate.mass_excess - load.mass)
+        mass = min(max(mass, least * self.parameters.m_0), most * self.parameters.m_0)
         velocity = estimate.x[self.layout.v_0]
         drag_before, uav_drag_before = _drag(load.air, velocity)
         # What one of the UAVs has of its own is no wind.
@@ -44,11 +48,19 @@ class LoadAdaptation:
         # Drag that comes on top from now on changes what is left over, not the whole.
         drag, uav_drag = _drag(self.wind.air, velocity)
         force, uav_force = load.force + drag_before - drag, load.uav_force + uav_drag_before - uav_drag
-        force += share * (limited(estimate.force, limit) - drag - force)
+        force += share * (self._bounded(estimate.force, limit, mass) - drag - force)
         uav_force += share * (limited(estimate.uav_force, self._uav_limit) - uav_drag - uav_force)
-        least, most = self.settings.mass_share
-        mass = min(max(mass, least * self.parameters.m_0), most * self.parameters.m_0)
         self.estimate = Load(mass, force, uav_force, self.wind.air)
+
+    def _bounded(self, force: Array, level_max: float, mass: float) -> Array:
+        """Return a disturbance ``force`` (3,), its level part within limits, and so the weight of a payload of ``mass``.
+
+        At hover a wrong mass is a vertical force, and what a payload suddenly loses appears as one for long.
+        """
+        least, most = self.settings.mass_share
+        own = mass * self.parameters.g
+        level = limited(force[:2], level_max)
+        return np.array([*level, min(max(own + force[2], least * self._weight), most * self._weight) - own])
 
 
 def _drag(air: Air | None, velocity: Array) -> tuple[Array, Array]:

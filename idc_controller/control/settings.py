@@ -99,9 +99,10 @@ class ControllerSettings(SettingsTable):
     """Table ``control.ground``."""
     # s; with which the reference follows the estimated load: slower than the estimate itself
     load_time_constant: float = 0.5
-    # least and largest payload mass that is learnt, over that of the system file
-    mass_share: tuple[float, float] = (0.5, 2.0)
-    force_limit: float = 0.4  # largest disturbance force that the reference leans against, over the payload's weight
+    # least and largest weight of the payload that is learnt, over that of the system file
+    mass_share: tuple[float, float] = (0.05, 2.0)
+    # largest level disturbance force that the reference leans against, over the payload's weight
+    force_limit: float = 0.4
     # the same where wind explains the force: of drag, and of drag and disturbance force together
     drag_limit: float = 0.65
     upright_time_constant: float = 0.5  # s; with which links come upright over a payload on the ground

@@ -235,9 +235,23 @@ def test_load_follows_disturbance_force_and_mass_of_the_payload_within_limits():
     least, most = settings.mass_share
     assert learnt(long, settings, mass_excess=10.0).mass == pytest.approx(most * P.m_0)
     assert learnt(long, settings, mass_excess=-10.0).mass == pytest.approx(least * P.m_0)
+    carried = P.m_0 * P.g
+    lost = learnt(long, settings, force=np.array([30.0, 0.0, -2.0 * carried]), mass_excess=-0.1)
+    assert lost.mass * P.g + lost.force[2] == pytest.approx(least * carried, rel=1e-2)
+    assert lost.force[0] == pytest.approx(settings.force_limit * carried, rel=1e-2)
     weight = float(P.m.min()) * P.g
     pulled = learnt(long, settings, uav_force=np.tile([0.0, 50.0, 0.0], (N, 1)) * np.eye(N)[0][:, None]).uav_force
     assert pulled[0] == pytest.approx([0.0, settings.force_limit * weight, 0.0], rel=1e-2)
+
+
+def test_on_the_ground_the_weight_of_the_payload_stays_and_the_lean_against_wind_goes():
+    settings = ControllerSettings()
+    adaptation = LoadAdaptation(MODEL, settings)
+    for _ in range(200):
+        adaptation.learn(estimated(force=np.array([2.0, -1.0, -16.0])))
+    for _ in range(200):
+        adaptation.release()
+    assert adaptation.estimate.force == pytest.approx([0.0, 0.0, -16.0], abs=1e-3)
     assert pulled[1:] == pytest.approx(np.zeros((N - 1, 3)), abs=1e-6)
 
 
