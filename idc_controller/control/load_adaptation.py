@@ -53,7 +53,7 @@ class LoadAdaptation:
         self.estimate = Load(mass, force, uav_force, self.wind.air)
 
     def _bounded(self, force: Array, level_max: float, mass: float) -> Array:
-        """Return a disturbance ``force`` (3,), its level part within limits, and so the weight of a payload of ``mass``.
+        """Return a disturbance ``force`` (3,), its level part and the weight of a payload of ``mass`` within limits.
 
         At hover a wrong mass is a vertical force, and what a payload suddenly loses appears as one for long.
         """
