@@ -8,7 +8,7 @@ import numpy as np
 from gcs.config import SystemConfig
 from gcs.config.tables import SensorsConfig
 from idc_controller.arrays import Array
-from idc_controller.rotations_float import Vector
+from idc_controller.rotations_float import Vector, into_body
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.autopilot.onboard_loop import step_together
 from vehicle_sim.faults.disturbances import Disturbances
@@ -52,6 +52,8 @@ class Team:
         self._samples = self._sensors.samples[-len(ids) :]
         self._times = np.empty(len(ids))
         self._measured_at = math.nan
+        self._felt: tuple[float, Array] | None = None
+        """Time (s), attitudes and velocities (N, 7) of the last step."""
 
     def wrenches(self) -> Wrenches:
         """Return the wrenches of the rotors for the physics steps up to the next step of the onboard loops."""
@@ -62,6 +64,8 @@ class Team:
         self._sensors.measure(states)
         self._measured_at = now
         self._times.fill(now)
+        if self._has_payload and self._disturbed:
+            self._accelerate(states, now)
         missing = self._disturb() if self._disturbed else ()
         changed = step_together(self._autopilots, self._arrays, self._samples, self._times, now, missing)
         for i in changed:
@@ -70,6 +74,18 @@ class Team:
             reported = vehicle.autopilot.state.navigation.reported
             vehicle.report(self._faults.reported_sample(vehicle.system_id, reported))
         return bool(changed)
+
+    def _accelerate(self, states: Array, now: float) -> None:
+        """Let the vehicles whose samples faults disturb measure their specific force; the others do not fly by it."""
+        before, self._felt = self._felt, (now, states[-len(self.vehicles) :, 3:10].copy())
+        if before is None or now <= before[0]:
+            return
+        changes = (self._felt[1][:, 4:] - before[1][:, 4:]) / (now - before[0])
+        for vehicle in self._disturbed:
+            w, q_x, q_y, q_z = self._felt[1][vehicle.system_id - 1, :4].tolist()
+            x, y, z = changes[vehicle.system_id - 1].tolist()
+            force = into_body((w, q_x, q_y, q_z), (x, y, z - vehicle.autopilot.state.airframe.g))
+            vehicle.autopilot.state.navigation.specific_force = force
 
     def feel(self, forces: Sequence[Vector], now: float) -> None:
         """Let the autopilots take the specific forces (N) (body frames, m/s2) of the time since the last step."""

@@ -18,7 +18,7 @@ NAN = (math.nan,) * 3
 
 def navigation_alone():
     """The navigation of a team of one, whose samples all come to ``update``."""
-    return Navigation(LAG, NavigationSettings(), OnboardArrays.of([AIRFRAME], LandDetectorSettings()))
+    return Navigation(LAG, AIRFRAME.g, NavigationSettings(), OnboardArrays.of([AIRFRAME], LandDetectorSettings()))
 
 
 class Turning:

@@ -51,7 +51,7 @@ class Autopilot:
             airframe,
             parameters,
             settings,
-            Navigation(airframe.motor_time_constant, settings.navigation, self.arrays),
+            Navigation(airframe.motor_time_constant, airframe.g, settings.navigation, self.arrays),
             LandDetector(self.arrays),
             Actuation(airframe.rotors.thrust_max, self.arrays),
             SetpointStream(settings.setpoints),

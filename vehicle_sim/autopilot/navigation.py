@@ -3,26 +3,32 @@
 import math
 
 from gcs.config.vehicle_settings import NavigationSettings
-from idc_controller.rotations_float import Quaternion, Vector, half_rotation, turned
+from idc_controller.rotations_float import Quaternion, Vector, half_rotation, into_body, turned
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.autopilot.onboard_kernels import FRESH_AT, SAMPLE_TIME
-from vehicle_sim.world.sensors import Measurement, is_rotation
+from vehicle_sim.world.sensors import ACCELEROMETER_RANGE, Measurement, is_rotation
 
 
 class Navigation:
     """Takes the sensors' samples, and for a sensor that is stuck or gives no numbers, an estimate from the others.
 
     The attitude then goes on with the rates; the rates are those that explain the attitude and the torque, by an
-    observer of second order; position and velocity stay what they were. A vehicle needs its rates hundreds of times a
-    second: with old ones it turns over.
+    observer of second order; position and velocity go on with the specific force (inertial dead reckoning). A vehicle
+    needs its rates hundreds of times a second: with old ones it turns over.
 
     Fresh samples are taken with those of the whole team, in :func:`.onboard_kernels.take_fresh_samples`; the others
     come to :meth:`update`.
     """
 
-    def __init__(self, motor_lag: float, settings: NavigationSettings, arrays: OnboardArrays) -> None:
-        """``motor_lag`` (s): time constant with which torques follow their commands; ``arrays`` of one vehicle."""
-        self._motor_lag = motor_lag
+    specific_force: Vector | None = None
+    """Mean of the time since the last step, in the body frame (m/s2); None: it is not measured."""
+
+    def __init__(self, motor_lag: float, g: float, settings: NavigationSettings, arrays: OnboardArrays) -> None:
+        """``motor_lag`` (s): time constant with which torques follow their commands; ``g`` in m/s2.
+
+        ``arrays`` of one vehicle.
+        """
+        self._motor_lag, self._g = motor_lag, g
         self._settings = settings
         self.arrays = arrays
         self._row, self._stamps = arrays.estimates[0], arrays.stamps[0]
@@ -87,8 +93,12 @@ class Navigation:
         step = time - known.time
         has_attitude = self._is_alive("attitude", sample.attitude) and is_rotation(sample.attitude)
         has_rates = self._has_rates = self._is_alive("rates", sample.rates)
-        self._raw = sample
-        if has_rates and has_attitude and sample.is_usable():
+        # One measured anew is never the same, but for a vehicle at rest in a world without noise.
+        has_position = _are_numbers(sample.position) and not (
+            self._raw is not None and sample.position == self._raw.position and any(sample.rates)
+        )
+        self._raw, raw = sample, self._raw
+        if has_rates and has_attitude and has_position and sample.is_usable():
             self._known, self._observed = sample, None
             return sample
         if has_rates:
@@ -99,14 +109,27 @@ class Navigation:
             rates = (0.0, 0.0, 0.0)
         if has_rates or not has_attitude:
             self._observed = None
-        self._known = Measurement(
-            time,
-            sample.attitude if has_attitude else turned(known.attitude, rates, step),
-            rates,
-            sample.position if _are_numbers(sample.position) else known.position,
-            sample.velocity if _are_numbers(sample.velocity) else known.velocity,
-        )
+        attitude = sample.attitude if has_attitude else turned(known.attitude, rates, step)
+        if has_position or self.specific_force is None:
+            position = sample.position if has_position else known.position
+            velocity = sample.velocity if _are_numbers(sample.velocity) else known.velocity
+        else:
+            has_velocity = _are_numbers(sample.velocity) and not (raw is not None and sample.velocity == raw.velocity)
+            velocity = sample.velocity if has_velocity else self._accelerated(known.velocity, attitude, step)
+            x, y, z = (r + step * v for r, v in zip(known.position, velocity, strict=True))
+            position = x, y, z
+        self._known = Measurement(time, attitude, rates, position, velocity)
         return self._known
+
+    def _accelerated(self, velocity: Vector, attitude: Quaternion, step: float) -> Vector:
+        """Return the ``velocity`` (m/s) after a ``step`` (s) of the specific force: at rest after an impact."""
+        assert self.specific_force is not None
+        if math.hypot(*self.specific_force) > ACCELEROMETER_RANGE:
+            return 0.0, 0.0, 0.0
+        w, x, y, z = attitude
+        a_x, a_y, a_z = into_body((w, -x, -y, -z), self.specific_force)
+        v_x, v_y, v_z = velocity
+        return v_x + step * a_x, v_y + step * a_y, v_z + step * (a_z + self._g)
 
     def _is_alive(self, channel: str, value: Quaternion | Vector) -> bool:
         # A vehicle at rest in a world without noise has rates of exactly zero.

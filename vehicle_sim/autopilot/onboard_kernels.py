@@ -146,7 +146,7 @@ def take_fresh_samples(
 ) -> None:
     """Write which ``samples`` (N, 13) are ``fresh``: numbers, with a rotation for attitude, and no repeated ones.
 
-    Fresh ones repeat neither attitude nor rates of the ``last``. They are the new ``estimates`` (N, 13), with
+    Fresh ones repeat neither position, nor attitude, nor rates of the ``last``. They are the new ``estimates`` (N, 13), with
     ``stamps`` (N, 2): the sample's of ``times`` (N,), and ``now`` (s). For the others :mod:`.navigation` decides:
     sensors repeat themselves by chance, or because they are stuck. Rates of zero are those of a vehicle at rest in a
     world without noise. All ``samples`` are then the ``last``.
@@ -163,13 +163,15 @@ def take_fresh_samples(
             and abs(rates) < _FAR
             and abs(total) < _FAR
         )
-        same_attitude, same_rates, still = True, True, True
+        same_position, same_attitude, same_rates, still = True, True, True, True
+        for k in range(3):
+            same_position = same_position and s[k] == last[i, k]
         for k in range(3, 7):
             same_attitude = same_attitude and s[k] == last[i, k]
         for k in range(10, 13):
             same_rates = same_rates and s[k] == last[i, k]
             still = still and s[k] == 0.0
-        fresh[i] = are_numbers and not same_attitude and (still or not same_rates)
+        fresh[i] = are_numbers and not same_attitude and (still or not (same_rates or same_position))
         for k in range(s.shape[0]):
             last[i, k] = s[k]
             if fresh[i]:
