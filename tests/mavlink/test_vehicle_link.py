@@ -8,6 +8,7 @@ import pytest
 
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
+from gcs.mavlink.layout import Sample
 from gcs.mavlink.vehicle_link import VehicleLink
 
 OWN, UNIT = px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT
@@ -71,6 +72,30 @@ def received_at(link):
 def test_each_kind_of_telemetry_has_the_time_at_which_it_came_last(linked, messages, component, expected):
     linked.send(7.0, *messages, component=component)
     assert received_at(linked.link) == expected
+
+
+TARGET = mavlink.MAVLink_attitude_target_message(STAMP, 0, [1.0, 0.0, 0.0, 0.0], 0.0, 0.0, 0.0, 0.5)
+RETURN = mavlink.MAVLink_obstacle_distance_3d_message(STAMP, 0, 12, 1, 1.0, 2.0, 3.0, 0.1, 9.0)
+SCAN_END = mavlink.MAVLink_obstacle_distance_message(STAMP * 1000, 0, [65535] * 72, 5, 5, 900, 0.0, 0.0, 12)
+
+
+@pytest.mark.parametrize(
+    ("system", "component", "expected"),
+    [
+        (3, OWN, [Sample.ATTITUDE, Sample.POSITION, Sample.SETPOINT, Sample.RETURNS, Sample.SCAN_END]),
+        (px4.PAYLOAD_UNIT_SYSTEM, UNIT, [Sample.ATTITUDE, Sample.POSITION]),
+        (3, UNIT, []),
+        (3, 77, []),
+        (px4.PAYLOAD_UNIT_SYSTEM, 77, []),
+    ],
+)
+def test_samples_are_those_of_the_autopilot_and_poses_and_motions_of_the_payload(linked, system, component, expected):
+    sender = Codec(system, component)
+    messages = attitude(), heartbeat(), position(), TARGET, RETURN, SCAN_END
+    datagram = b"".join(sender.encode(message) for message in messages)
+    samples = linked.link.handle(Codec(254, 1).read(datagram), 7.0)
+    assert [received.layout.sample for received in samples] == expected
+    assert {received.time_boot_ms for received in samples} <= {STAMP}
 
 
 def test_telemetry_is_complete_with_attitude_and_position(linked):
