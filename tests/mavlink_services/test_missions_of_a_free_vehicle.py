@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as m
@@ -55,13 +54,6 @@ def current(bench: FreeBench) -> tuple[int, int]:
 def reached(bench: FreeBench) -> list[int]:
     """Items reached, in order, repetitions left out."""
     return list(dict.fromkeys(found.seq for *_, found in bench.messages if found.get_type() == "MISSION_ITEM_REACHED"))
-
-
-@pytest.fixture
-def standing() -> Iterator[FreeBench]:
-    with FreeBench() as bench:
-        bench.run(0.5)
-        yield bench
 
 
 @pytest.fixture
