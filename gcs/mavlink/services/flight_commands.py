@@ -71,9 +71,9 @@ class FlightCommands:
 
     def _take_off(self, message: Command, request: Request) -> Answer:
         """Take off to an altitude (NaN: MIS_TAKEOFF_ALT above the ground)."""
-        place = self._place(message, request)
-        if place is None:
-            return UNSUPPORTED_FRAME
+        place = self._valid_place("Takeoff", message, request)
+        if isinstance(place, Answer):
+            return place
         return self._aircraft.take_off(place.altitude, request.now)
 
     def _reposition(self, message: Command, request: Request) -> Answer:
@@ -81,6 +81,8 @@ class FlightCommands:
         place = self._valid_place("Reposition", message, request)
         if isinstance(place, Answer):
             return place
+        if math.isinf(message.param4):
+            return denied("Reposition denied: the yaw is infinite", 4)
         speed = message.param1 if message.param1 > 0.0 else math.nan
         return self._aircraft.reposition(Reposition(*place, message.param4, speed), request.now)
 
