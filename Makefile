@@ -125,7 +125,7 @@ docs: $(INSTALLED)
 	$(VENV)/bin/python tests/packaging/notice.py > NOTICE
 
 PICTURES := build/pictures
-FILM := $(VENV)/bin/gcs film --speed 4 --size 640x360 --fps 12
+FILM := $(VENV)/bin/gcs film --speed 4 --size 476x268 --fps 6
 pictures: $(COMPILED)
 	rm -rf $(PICTURES)
 	$(VENV)/bin/gcs fly missions/figure_eight_spheres.toml --seed 5001 --run-dir $(PICTURES)/spheres
