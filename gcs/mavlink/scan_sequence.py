@@ -5,7 +5,7 @@ _REMEMBERED = 16
 
 
 class ScanSequence:
-    """Tells scans of which all messages have come from those of which some may be missing.
+    """Detects complete scans: those of which no message can be missing.
 
     A scan is complete if its first message follows the one before it, of whatever kind, and each the next up to its
     end: then nothing was lost in between.

@@ -28,7 +28,7 @@ _WHOLE_TURN = 360.0
 
 
 class FlightCommands:
-    """What each command asks the aircraft to do."""
+    """Checks the parameters of each command, and has the aircraft carry it out."""
 
     def __init__(self, aircraft: Aircraft, source: MessageSource) -> None:
         """``source`` has the place of home."""
