@@ -193,3 +193,11 @@ def test_take_off_altitude_is_above_the_ground_also_with_another_home(bench):
     assert bench.vehicles[0].aircraft.take_off(DEFAULT_HOME.altitude + 4.0, bench.now).result == ACCEPTED
     bench.run(6.0)
     assert bench.position() == pytest.approx((0.0, 0.0, -4.0), abs=0.2)
+
+
+def test_refused_mode_leaves_the_altitude_of_the_next_take_off(bench):
+    assert bench.vehicles[0].aircraft.take_off(DEFAULT_HOME.altitude + 4.0, bench.now).result == ACCEPTED
+    assert bench.command(RETURN) == REJECTED
+    assert bench.command(ARM, 1) == ACCEPTED
+    bench.run(7.0)
+    assert bench.position() == pytest.approx((0.0, 0.0, -4.0), abs=0.2)

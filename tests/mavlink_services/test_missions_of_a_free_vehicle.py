@@ -106,6 +106,13 @@ def test_mission_cleared_in_flight_leaves_the_vehicle_where_it_is(on_mission: Fr
     assert on_mission.mode_of() == "AUTO.LOITER"
 
 
+def test_refused_start_of_a_mission_leaves_its_progress(on_mission: FreeBench) -> None:
+    on_mission.set_parameter("GF_MAX_HOR_DIST", 3.0)
+    assert on_mission.command(m.MAV_CMD_MISSION_START, 0) == m.MAV_RESULT_DENIED
+    on_mission.run(1.5)
+    assert current(on_mission) == (1, m.MISSION_STATE_ACTIVE)
+
+
 def test_mission_that_cannot_be_started_is_refused_at_its_start(standing: FreeBench) -> None:
     assert upload(standing, item(WAYPOINT, 20_000.0, 0.0, 4.0)) == ACCEPTED
     assert standing.command(*mode(px4.AutoMode.MISSION)) != m.MAV_RESULT_ACCEPTED

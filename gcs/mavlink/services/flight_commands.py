@@ -25,6 +25,10 @@ _ITEMS_MAX = 1 << 16
 _ORBIT_HEADINGS = mavlink.ORBIT_YAW_BEHAVIOUR_HOLD_FRONT_TANGENT_TO_CIRCLE + 1
 """Those of a remote control are not."""
 _WHOLE_TURN = 360.0
+_MODE_UNCHANGED = Answer(
+    mavlink.MAV_RESULT_UNSUPPORTED, "Reposition denied: param2 is not 1 (MAV_DO_REPOSITION_FLAGS_CHANGE_MODE)", 2
+)
+"""PX4's answer to a reposition that is not to change the mode."""
 
 
 class FlightCommands:
@@ -77,10 +81,12 @@ class FlightCommands:
         return self._aircraft.take_off(place.altitude, request.now)
 
     def _reposition(self, message: Command, request: Request) -> Answer:
-        """Fly to a place and hold there; speed (param1), yaw (param4, rad)."""
+        """Fly to a place and hold there; speed (param1), param2 1 (the mode changes), yaw (param4, rad)."""
         place = self._valid_place("Reposition", message, request)
         if isinstance(place, Answer):
             return place
+        if message.param2 != mavlink.MAV_DO_REPOSITION_FLAGS_CHANGE_MODE:
+            return _MODE_UNCHANGED
         if math.isinf(message.param4):
             return denied("Reposition denied: the yaw is infinite", 4)
         speed = message.param1 if message.param1 > 0.0 else math.nan
