@@ -65,8 +65,6 @@ class VehicleStatus:
         }
 
     def _on_heartbeat(self, message: mavlink.MAVLink_heartbeat_message) -> None:
-        if message.get_srcComponent() != _AUTOPILOT:
-            return
         self.autopilot, self.custom_mode = message.autopilot, message.custom_mode
         self.armed = bool(message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
         self.offboard = message.custom_mode == px4.MODE_OFFBOARD
@@ -116,7 +114,7 @@ class VehicleLink:
         self.requests = Requests(system_id, self.status.parameters, settings)
         self.setpoints = SetpointStream(self.clock, self.status.parameters, settings)
         self._handlers = {**self.status.handlers, **self.requests.handlers}
-        """What takes a message of the vehicle, by message id; others are not read."""
+        """What takes a message of the vehicle's autopilot, by message id; others are not read."""
         self.received_at = -math.inf
         """Time of the last message of any kind."""
         self.attitude_received_at = -math.inf
@@ -152,27 +150,26 @@ class VehicleLink:
                         *_, self.status.payload_clipping, _, _ = received.fields
                 continue
             self.received_at = now
-            if component == _AUTOPILOT:
-                breaks = self.statistics.breaks
-                if run > 1:
-                    self.statistics.run(sequence, run, now)
+            if component != _AUTOPILOT:
+                continue  # a companion answers TIMESYNC, too, by a clock of its own
+            breaks = self.statistics.breaks
+            if run > 1:
+                self.statistics.run(sequence, run, now)
+            else:
+                in_order = self.statistics.message(sequence, now)
+            if sample is _ATTITUDE or sample is _POSITION:
+                if (stamp, in_order) != last_stamp:  # attitude and position are of one moment
+                    last_stamp = stamp, in_order
+                    self.clock.add_stamp(stamp * 1e-3, now, in_order)
+                if sample is _ATTITUDE:
+                    self.attitude_received_at = now
                 else:
-                    in_order = self.statistics.message(sequence, now)
-                if sample is _ATTITUDE or sample is _POSITION:
-                    if (stamp, in_order) != last_stamp:  # attitude and position are of one moment
-                        last_stamp = stamp, in_order
-                        self.clock.add_stamp(stamp * 1e-3, now, in_order)
-                    if sample is _ATTITUDE:
-                        self.attitude_received_at = now
-                    else:
-                        self.position_received_at = now
-                elif sample is not None and sample is not _SETPOINT:
-                    self.statistics.scans.add(stamp, sample is _SCAN_END, breaks, self.statistics.breaks)
-                if sample is not None:
-                    samples.append(received)
+                    self.position_received_at = now
+            elif sample is not None and sample is not _SETPOINT:
+                self.statistics.scans.add(stamp, sample is _SCAN_END, breaks, self.statistics.breaks)
             if sample is not None:
-                continue
-            if layout.message_id == _TIMESYNC:
+                samples.append(received)
+            elif layout.message_id == _TIMESYNC:
                 tc1, ts1, *_ = received.fields
                 if tc1:
                     self.clock.add_answer(ts1, now, tc1)

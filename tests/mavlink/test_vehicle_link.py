@@ -124,6 +124,25 @@ def test_answer_to_a_timesync_request_gives_the_latency_and_a_request_of_the_veh
     assert linked.link.clock.delay == pytest.approx(0.04)
 
 
+def test_companion_answers_and_reports_nothing_for_its_vehicle(linked):
+    link = linked.link
+    sent = link.clock.request(10.0)
+    link.requests.want_parameters(("THR_MAX",))
+    arming = link.requests.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1.0)
+    messages = [
+        mavlink.MAVLink_timesync_message(1, sent), sys_status(PREARM, 0), heartbeat(128, px4.MODE_OFFBOARD),
+        mavlink.MAVLink_param_value_message(b"THR_MAX", 27.5, mavlink.MAV_PARAM_TYPE_REAL32, 1, 0),
+        mavlink.MAVLink_command_ack_message(arming.number, mavlink.MAV_RESULT_UNSUPPORTED),
+    ]  # fmt: skip
+    linked.send(10.04, *messages, component=77)
+    assert (link.status.prearm_ok, link.status.armed, link.status.parameters) == (None, False, {})
+    assert arming.result is None
+    linked.send(10.08, *messages)  # the autopilot's own
+    assert link.clock.delay == pytest.approx(0.04)
+    assert (link.status.prearm_ok, link.status.armed, link.status.parameters) == (False, True, {"THR_MAX": 27.5})
+    assert arming.result == mavlink.MAV_RESULT_UNSUPPORTED
+
+
 def test_mode_and_arming_are_those_of_the_autopilots_heartbeat(linked):
     status, armed = linked.link.status, mavlink.MAV_MODE_FLAG_SAFETY_ARMED
     linked.send(1.0, heartbeat(armed | 1, px4.MODE_OFFBOARD), component=UNIT)
