@@ -17,8 +17,8 @@ export OPENBLAS_NUM_THREADS := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help install fly test test-fast test-long test-lowest test-numerics release golden golden-renew page
-.PHONY: claims claims-all claims-write fault-tables anew benchmark benchmark-campaign benchmark-check benchmark-view docs
-.PHONY: pictures clean
+.PHONY: claims claims-all claims-write fault-tables anew benchmark benchmark-campaign benchmark-check benchmark-view
+.PHONY: benchmark-flood docs pictures clean
 
 help:
 	@echo "make fly          fly $(MISSION) with a simulated swarm (MISSION=... for another one)"
@@ -38,6 +38,7 @@ help:
 	@echo "make benchmark-check  compare the CPU cost of flights with that of the commit BASE ($(BASE))"
 	@echo "make benchmark-campaign  throughput of parallel flights against a single one's"
 	@echo "make benchmark-view   CPU cost of a flight with its live view against that without"
+	@echo "make benchmark-flood  a vehicle's telemetry while another vehicle's port is flooded"
 	@echo "make docs         write docs/settings.md, failsafes.md, autopilots.md, services.md and NOTICE from what they are about"
 	@echo "make pictures     fly, film and photograph the pictures of README.md (needs Chromium; about 6 min of CPU)"
 	@echo "make page         bundle the scripts of the report page anew (needs node and npm)"
@@ -108,6 +109,10 @@ benchmark-campaign: $(COMPILED)
 benchmark-view: $(COMPILED)
 	$(VENV)/bin/python tests/benchmarks/view.py
 
+# OPTIONS: --rate N, --seconds S, the names of floods.
+benchmark-flood: $(COMPILED)
+	$(VENV)/bin/python tests/benchmarks/flood.py $(OPTIONS)
+
 benchmark-check: $(COMPILED)
 	$(VENV)/bin/python tests/benchmarks/check.py --base $(BASE)
 
@@ -120,7 +125,7 @@ docs: $(INSTALLED)
 	$(VENV)/bin/python tests/packaging/notice.py > NOTICE
 
 PICTURES := build/pictures
-FILM := $(VENV)/bin/gcs film --speed 4 --size 640x360 --fps 12
+FILM := $(VENV)/bin/gcs film --speed 4 --size 476x268 --fps 6
 pictures: $(COMPILED)
 	rm -rf $(PICTURES)
 	$(VENV)/bin/gcs fly missions/figure_eight_spheres.toml --seed 5001 --run-dir $(PICTURES)/spheres

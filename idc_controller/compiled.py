@@ -82,7 +82,7 @@ class _ByContent(_CacheLocator):
         return self._checksum
 
     def get_disambiguator(self) -> str:
-        """Return what tells files of one name apart."""
+        """Return what distinguishes files of one name."""
         return self._checksum[:16]
 
     @classmethod

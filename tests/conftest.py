@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ from gcs.numerics import choose_kernels
 choose_kernels()  # before numpy is imported: what runs in this process gives the figures of a flight on any processor
 
 import pymavlink.dialects.v20.common as mavlink  # noqa: E402
+from free_bench import FreeBench  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.text import Text  # noqa: E402
 from vehicle_bench import Bench  # noqa: E402
@@ -40,6 +42,14 @@ def bench() -> Bench:
 def flying(bench: Bench) -> Bench:
     bench.fly()
     return bench
+
+
+@pytest.fixture
+def standing() -> Iterator[FreeBench]:
+    """A free vehicle that stands, and has measured where."""
+    with FreeBench() as bench:
+        bench.run(0.5)
+        yield bench
 
 
 @pytest.fixture

@@ -1,6 +1,6 @@
 """What an autopilot must offer to carry a payload with others: one table, for preflight and for ``docs/autopilots.md``.
 
-Nothing here asks which program a vehicle runs: what it has sent counts.
+No requirement depends on which program a vehicle runs: what it has sent counts.
 """
 
 import math

@@ -14,26 +14,20 @@ from gcs.mavlink import px4
 from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.id_check import SystemIdCheck
+from gcs.mavlink.layout import Sample
 from gcs.mavlink.messages import Received
-from gcs.mavlink.scan_sequence import RETURNS, SCAN_END, scan_stamp
 from gcs.mavlink.telemetry import measurements, scan_end, scan_returns, setpoint_flown
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.estimation.measurements import PAYLOAD
 
-_SETPOINT, _SCAN = mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET, (RETURNS, SCAN_END)
-_STAMPED = frozenset(
-    (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED, _SETPOINT, *_SCAN)
-)
-"""Messages of one moment, which their stamp names."""
-_SENDERS = dict.fromkeys((_SETPOINT, *_SCAN), px4.AUTOPILOT_COMPONENT)
-"""Messages that only one component sends: of another one's sequence nothing is known."""
+_ATTITUDE, _POSITION, _SETPOINT, _RETURNS = Sample.ATTITUDE, Sample.POSITION, Sample.SETPOINT, Sample.RETURNS
 
 
 class _Routed(NamedTuple):
     """What has come in one exchange for the estimator, in order."""
 
     samples: list[tuple[Received, int, float]]
-    """Measurements: the message, the vehicle that sent it (0 .. N-1), time of validity (s)."""
+    """Measurements: the message, its source, time of validity (s)."""
     senders: list[int]
     """The vehicle (0 .. N-1) as which each of them was sent."""
     setpoints: list[tuple[Received, int, float, float, float, float]]
@@ -102,21 +96,18 @@ class TelemetryRouter:
                 group = groups.setdefault(index, [])
             if received.target_system and not received.is_for(self._codec.system_id):
                 continue  # an answer to another system behind this address
-            if received.component != _SENDERS.get(received.layout.message_id, received.component):
-                continue
             if system == px4.PAYLOAD_UNIT_SYSTEM and received.component != px4.PAYLOAD_UNIT_COMPONENT:
                 continue
             group.append(received)
         for index, group in groups.items():
             if group:
                 link = self._links[index]
-                link.handle(group, now, size)
+                samples = link.handle(group, now, size)
                 if len(sharing := self._at[sender]) > 1:
                     for other in sharing:
                         other.payload_received_at = max(other.payload_received_at, link.payload_received_at)
-                stamped = [received for received in group if received.layout.message_id in _STAMPED]
-                if stamped and link.clock.known:
-                    self._route(stamped, index, now, routed)
+                if samples and link.clock.known:
+                    self._route(samples, index, now, routed)
         return bool(groups)
 
     def _enter(self, index: int, address: Address) -> None:
@@ -146,8 +137,8 @@ class TelemetryRouter:
                 link.conflict.other_system_id = system_id
         return None
 
-    def _route(self, group: list[Received], index: int, now: float, routed: _Routed) -> None:
-        """Route the messages, and runs of them, with a time stamp of one vehicle in one datagram."""
+    def _route(self, samples: list[Received], index: int, now: float, routed: _Routed) -> None:
+        """Route the samples, and runs of them, of one vehicle in one datagram."""
         link, obstacle_map = self._links[index], self._flight.system.obstacle_map
         offset = link.clock.offset
         if index == 0:
@@ -155,26 +146,25 @@ class TelemetryRouter:
         team_offset, uav = self._clock.offset, self._id_check.vehicle_of(index)
         latest = -math.inf
         stamp, time = -1, math.nan
-        for received in group:
-            message_id = received.layout.message_id
-            now_stamp = scan_stamp(received) if message_id == SCAN_END else received.time_boot_ms
-            if now_stamp != stamp:
-                stamp = now_stamp
+        for received in samples:
+            sample = received.layout.sample
+            if received.time_boot_ms != stamp:
+                stamp = received.time_boot_ms
                 time = whole_ms(link.clock.bounds.unwrapped(stamp * 1e-3) - offset + team_offset)
-            if message_id == _SETPOINT:
+            if sample is _ATTITUDE or sample is _POSITION:
+                routed.samples.append((received, PAYLOAD if received.system == px4.PAYLOAD_UNIT_SYSTEM else uav, time))
+                routed.senders.append(index)
+            elif sample is _SETPOINT:
                 # Its stamp is that of the moment at which it began to act.
                 until = min(max(time, latest), self._clock.time(now))
                 routed.setpoints.append((received, index, time, until, link.clock.spread, link.setpoints.delay_max))
-            elif message_id in _SCAN:
-                # Scans from before a clock jump have the stamp of another pose.
-                if now - link.clock.jumped_at > self._clock_settled:
-                    if message_id == RETURNS:
-                        obstacle_map.placement.add(scan_returns(received), index, time, now)
-                    else:
-                        obstacle_map.placement.end(scan_end(received, link.statistics.scans), index, time, now)
-            else:
-                routed.samples.append((received, uav, time))
-                routed.senders.append(index)
+            # Scans from before a clock jump have the stamp of another pose.
+            elif now - link.clock.jumped_at > self._clock_settled:
+                if sample is _RETURNS:
+                    obstacle_map.placement.add(scan_returns(received), index, time, now)
+                else:
+                    is_complete = link.statistics.scans.is_complete(stamp)
+                    obstacle_map.placement.end(scan_end(received, is_complete), index, time, now)
             if time > latest:
                 latest = time
 

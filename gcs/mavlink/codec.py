@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from gcs.mavlink.frame_kernels import framed_run, messages_in
 from gcs.mavlink.frames import AROUND, CHECKSUM, HEADER, V2
-from gcs.mavlink.layout import LAYOUTS, Packed, PackedRun, packed
+from gcs.mavlink.layout import LAYOUTS, Packed, PackedRun, Sample, packed
 from gcs.mavlink.messages import Message, Received
 
 #: Frames are gathered into datagrams up to this size, which every usual path carries unfragmented (bytes).
@@ -23,15 +23,12 @@ _HEADER = struct.Struct("<BHB2s3s")
 """Of MAVLink 2, behind the marker: length, flags, sequence number, sender, id of the message."""
 _CHECKSUM = struct.Struct("<H")
 
-_POINT = mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D
-"""The kind of message of which many come at once."""
-
 _LAYOUTS = [LAYOUTS[number] for number in sorted(LAYOUTS)]
 _KINDS = np.array(
     [
         (
             layout.message_id, layout.crc_extra[0], *(*layout.target_offsets, -1, -1)[:2],
-            layout.dtype.itemsize if layout.message_id == _POINT else -1,
+            layout.dtype.itemsize if layout.sample is Sample.RETURNS else -1, layout.stamp_bytes,
         )
         for layout in _LAYOUTS
     ]

@@ -17,6 +17,8 @@ Rows = NDArray[np.int64]
 RUN_LIMIT = 256
 """Largest number of messages of a run: as many as there are sequence numbers."""
 _SEQUENCE, _STAMP = 4, 4
+_MICROSECONDS = 8
+"""Bytes of a message's stamp in microseconds."""
 STAMP_BYTES = 8
 """Bytes of the stamp of a record."""
 _end_of_frame = inlined(end_of_frame)
@@ -70,14 +72,14 @@ def messages_in(datagram: Cells1, kinds: Indices2, bad_limit: int) -> tuple[Indi
     Args:
         datagram: Bytes (n,), whatever they are.
         kinds: Of each kind of message, by rising message id: that, the last byte that the checksum covers, where the
-            payload holds target system and component, -1: nowhere, and the length of payloads of which a run is taken
-            as one message, -1: none (k, 5).
+            payload holds target system and component, -1: nowhere, the length of payloads of which a run is taken
+            as one message, -1: none, and that of the stamp in front, 4 (ms) or 8 (us) bytes (k, 6).
         bad_limit: Number of bad frames behind which the rest of the datagram is passed over.
 
     Returns:
         A row for each message or run: row in ``kinds``; where the payload begins and ends, of a run the first begins
         and the last ends; number of messages; system, component and sequence number, of a run the first; target system
-        and component; the payload's first four bytes as a number (m, 10).
+        and component; stamp (ms), modulo 2**32 (m, 10).
     """
     size = datagram.shape[0]
     found = np.empty((size // 8 + 1, 10), np.int64)
@@ -125,9 +127,12 @@ def messages_in(datagram: Cells1, kinds: Indices2, bad_limit: int) -> tuple[Indi
         for k in range(2):
             at = kinds[kind, 2 + k]
             row[7 + k] = datagram[first + at] if 0 <= at < length else 0
-        row[9] = 0
-        for k in range(_STAMP):
-            row[9] |= (0 + datagram[first + k]) << 8 * k if k < length else 0
+        stamp = np.uint64(0)
+        for k in range(min(kinds[kind, 5], length)):
+            stamp |= np.uint64(datagram[first + k]) << np.uint64(8 * k)
+        if kinds[kind, 5] == _MICROSECONDS:
+            stamp = stamp // np.uint64(1000) & np.uint64(0xFFFFFFFF)
+        row[9] = np.int64(stamp)
         count += 1
         start = end
     return found[:count], bad, skipped

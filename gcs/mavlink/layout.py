@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from enum import Enum
 from functools import cached_property
 from itertools import accumulate
 from operator import attrgetter, itemgetter
@@ -29,6 +30,22 @@ class PackedRun(NamedTuple):
     values: NDArray[np.void]
 
 
+class Sample(Enum):
+    """What a message holds of the moment that its stamp names, by message id."""
+
+    ATTITUDE = mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION
+    POSITION = mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED
+    SETPOINT = mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET
+    """The set-point that a vehicle flies."""
+    RETURNS = mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D
+    """A return of a scan, or a run of them."""
+    SCAN_END = mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE
+    """The end of a scan, behind its returns."""
+
+
+_SAMPLES = {sample.value: sample for sample in Sample}
+
+
 class Layout:
     """The kind of message ``kind``, and its conversion to and from the payload of a frame.
 
@@ -39,6 +56,8 @@ class Layout:
     def __init__(self, kind: type[Message]) -> None:
         self.kind = kind
         self.message_id: int = kind.id
+        self.sample = _SAMPLES.get(kind.id)
+        """The kind of sample in such a message; None: it is no sample."""
         self.wire_id: bytes = kind.id.to_bytes(3, "little")
         """The message id as it is sent."""
         self.crc_extra = bytes([kind.crc_extra])
@@ -50,6 +69,8 @@ class Layout:
         self._has_text = bool(texts)
         for i in texts:  # pymavlink keeps a text as it is on the wire beside the text that people read
             names[i], lengths[i] = f"_{names[i]}_raw", 0
+        self.stamp_bytes = 8 if names[0] == "time_usec" else 4
+        """Length of a stamp in front: 8 of microseconds, 4 of milliseconds."""
         self._values = _tuple_of(attrgetter, names)
         self._lengths = lengths if any(lengths) else None
         """Lengths of the fields in the order of the wire, 0: no array; None: there is no array."""

@@ -1,4 +1,4 @@
-"""What the ground asks of a vehicle once, for its log: what it is (AUTOPILOT_VERSION), and all of its parameters."""
+"""Requests that the ground sends a vehicle once, for its log: AUTOPILOT_VERSION and all parameters."""
 
 import math
 

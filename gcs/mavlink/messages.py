@@ -32,7 +32,7 @@ class Received(NamedTuple):
     target_system: int
     target_component: int
     time_boot_ms: int
-    """The stamp of a streamed measurement, its first field; of another message nothing."""
+    """The stamp (ms) in its first field, where OBSTACLE_DISTANCE has microseconds; of a message without one nothing."""
 
     @property
     def message_id(self) -> int:

@@ -11,19 +11,17 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address
 from gcs.mavlink.clock import RemoteClock
+from gcs.mavlink.layout import Sample
 from gcs.mavlink.link_statistics import LinkStatistics
 from gcs.mavlink.messages import Received
 from gcs.mavlink.requests import Requests
-from gcs.mavlink.scan_sequence import RETURNS, SCAN_END
 from gcs.mavlink.setpoints import SetpointStream
 from gcs.mavlink.settings import LinkSettings
 from gcs.mavlink.status_text import TextChunks
 
-_ATTITUDE, _POSITION = mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED
-_NAVIGATION, _TIMESYNC = (_ATTITUDE, _POSITION), mavlink.MAVLINK_MSG_ID_TIMESYNC
-_VIBRATION = mavlink.MAVLINK_MSG_ID_VIBRATION
+_ATTITUDE, _POSITION, _SETPOINT, _SCAN_END = Sample.ATTITUDE, Sample.POSITION, Sample.SETPOINT, Sample.SCAN_END
+_TIMESYNC, _VIBRATION = mavlink.MAVLINK_MSG_ID_TIMESYNC, mavlink.MAVLINK_MSG_ID_VIBRATION
 _AUTOPILOT = px4.AUTOPILOT_COMPONENT
-_SCAN = frozenset((RETURNS, SCAN_END))
 
 
 @dataclass
@@ -67,8 +65,6 @@ class VehicleStatus:
         }
 
     def _on_heartbeat(self, message: mavlink.MAVLink_heartbeat_message) -> None:
-        if message.get_srcComponent() != _AUTOPILOT:
-            return
         self.autopilot, self.custom_mode = message.autopilot, message.custom_mode
         self.armed = bool(message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
         self.offboard = message.custom_mode == px4.MODE_OFFBOARD
@@ -118,7 +114,7 @@ class VehicleLink:
         self.requests = Requests(system_id, self.status.parameters, settings)
         self.setpoints = SetpointStream(self.clock, self.status.parameters, settings)
         self._handlers = {**self.status.handlers, **self.requests.handlers}
-        """What takes a message of the vehicle, by message id; others are not read."""
+        """What takes a message of the vehicle's autopilot, by message id; others are not read."""
         self.received_at = -math.inf
         """Time of the last message of any kind."""
         self.attitude_received_at = -math.inf
@@ -135,44 +131,50 @@ class VehicleLink:
         """Time of its last attitude or of its last position, the earlier of the two."""
         return min(self.attitude_received_at, self.position_received_at)
 
-    def handle(self, messages: Sequence[Received], now: float, size: int = 0) -> None:
-        """Take messages of this vehicle and of the payload unit, runs too, of one datagram of ``size`` bytes."""
+    def handle(self, messages: Sequence[Received], now: float, size: int = 0) -> list[Received]:
+        """Take messages of this vehicle and of the payload unit, runs too, of one datagram of ``size`` bytes.
+
+        Return the samples: the payload's attitude and position, and all of the vehicle's autopilot.
+        """
+        samples: list[Received] = []
         last_stamp = None
         for received in messages:
             layout, _, run, system, component, sequence, _, _, stamp = received
-            message_id = layout.message_id
+            sample = layout.sample
             if system != self.system_id:
-                if component == px4.PAYLOAD_UNIT_COMPONENT and message_id in _NAVIGATION:
-                    self.payload_received_at = now
-                elif component == px4.PAYLOAD_UNIT_COMPONENT and message_id == _VIBRATION:
-                    *_, self.status.payload_clipping, _, _ = received.fields
+                if component == px4.PAYLOAD_UNIT_COMPONENT:
+                    if sample is _ATTITUDE or sample is _POSITION:
+                        self.payload_received_at = now
+                        samples.append(received)
+                    elif layout.message_id == _VIBRATION:
+                        *_, self.status.payload_clipping, _, _ = received.fields
                 continue
             self.received_at = now
-            if component == _AUTOPILOT:
-                breaks = self.statistics.breaks
-                if run > 1:
-                    self.statistics.run(sequence, run, now)
+            if component != _AUTOPILOT:
+                continue  # a companion answers TIMESYNC, too, by a clock of its own
+            breaks = self.statistics.breaks
+            if run > 1:
+                self.statistics.run(sequence, run, now)
+            else:
+                in_order = self.statistics.message(sequence, now)
+            if sample is _ATTITUDE or sample is _POSITION:
+                if (stamp, in_order) != last_stamp:  # attitude and position are of one moment
+                    last_stamp = stamp, in_order
+                    self.clock.add_stamp(stamp * 1e-3, now, in_order)
+                if sample is _ATTITUDE:
+                    self.attitude_received_at = now
                 else:
-                    in_order = self.statistics.message(sequence, now)
-                if message_id in _SCAN:
-                    self.statistics.scans.add(received, breaks, self.statistics.breaks)
-                    continue
-                if message_id in _NAVIGATION:
-                    if (stamp, in_order) != last_stamp:  # attitude and position are of one sample
-                        last_stamp = stamp, in_order
-                        self.clock.add_stamp(stamp * 1e-3, now, in_order)
-                    if message_id == _ATTITUDE:
-                        self.attitude_received_at = now
-                    else:
-                        self.position_received_at = now
-                    continue
-            elif message_id in _SCAN or message_id in _NAVIGATION:
-                continue
-            if message_id == _TIMESYNC:
+                    self.position_received_at = now
+            elif sample is not None and sample is not _SETPOINT:
+                self.statistics.scans.add(stamp, sample is _SCAN_END, breaks, self.statistics.breaks)
+            if sample is not None:
+                samples.append(received)
+            elif layout.message_id == _TIMESYNC:
                 tc1, ts1, *_ = received.fields
                 if tc1:
                     self.clock.add_answer(ts1, now, tc1)
-            elif (handler := self._handlers.get(message_id)) is not None:
+            elif (handler := self._handlers.get(layout.message_id)) is not None:
                 handler(received.message)
         # Without a stamp of its own it counts as sent with the datagram before.
         self.clock.queue.add(size, self.clock.bounds.sent, now)
+        return samples

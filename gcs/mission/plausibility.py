@@ -8,7 +8,7 @@ from gcs.mission.model import Lissajous, Mission
 HIGHEST = 120.0
 """m above the ground: up to there the open category of the EU (2019/947) and Part 107 of the FAA (400 ft) let fly."""
 FARTHEST = 500.0
-"""m from the pilot: about as far as a quadrotor is in sight, as both rules ask."""
+"""m from the pilot: about as far as a quadrotor is in sight, as both rules require."""
 LONGEST = 1800.0
 """s: longer than a charge of a quadrotor lasts that carries a load."""
 _DEGREES = 0.01

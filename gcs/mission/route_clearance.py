@@ -1,4 +1,4 @@
-"""Whether anything is near the route of a mission: what a preflight check asks first, at little cost."""
+"""Whether anything is near the route of a mission: the first preflight check of obstacles, at little cost."""
 
 import math
 from collections.abc import Sequence

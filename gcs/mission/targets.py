@@ -1,4 +1,4 @@
-"""What a mission asks the payload to reach: its waypoints in order, and the place where it lands."""
+"""Targets of a mission: its waypoints in order, and the landing place."""
 
 import re
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ class Targets:
 
 
 def targets_of(mission: Mission) -> Targets:
-    """Return what a mission asks the payload to reach. Only for one that has come to its end: others may have none."""
+    """Return the targets of a mission. Only for one that has come to its end: others may have none."""
     if not isinstance(mission.reference, Route):
         top = (0.0, 0.0, -mission.reference.altitude)
         return Targets((Target("the curve's altitude", top, is_climb=True),))

@@ -13,7 +13,7 @@ class AppendOnlyFile:
     """Appends whole records to a new file; a killed process leaves whole records.
 
     Every record goes to the operating system at once. A record that cannot be written (full disk) is taken
-    back to the last whole record; writing then stops, ``error`` says why, ``incomplete`` is told, and the flight
+    back to the last whole record; writing then stops, ``error`` says why, it is added to ``incomplete``, and the flight
     goes on. ``close()`` may be called more than once; records after it are dropped.
     """
 

@@ -40,7 +40,7 @@ class Arrival:
     def __str__(self) -> str:
         """Return what was missed, in words; empty: nothing."""
         if not self.missed:
-            return "" if self.largest is not None else "the records do not tell whether the waypoints were reached"
+            return "" if self.largest is not None else "the records do not show whether the waypoints were reached"
         more = len(self.missed) - 1
         return f"{self.missed[0]}" + (f"; {more} more missed" if more else "")
 

@@ -50,7 +50,7 @@ class Verdict:
 def verdict(
     run: RunData, ground: GroundReport, targets: Targets | None, tolerance: float, landing_on_record: bool = True
 ) -> Verdict:
-    """Return the verdict on a flight that was to reach ``targets`` within ``tolerance`` (m); None: not asked.
+    """Return the verdict on a flight that was to reach ``targets`` within ``tolerance`` (m); None: not checked.
 
     ``landing_on_record``: the records of the truth did not end before the flight.
     """
@@ -90,7 +90,7 @@ def _outcome(run: RunData, ground: GroundReport, landing: Mapping[str, Any] | No
 
 
 def _identified(run: RunData, ground: GroundReport) -> str:
-    """Return which obstacle it was that the ground's reason calls by a number of its own, as far as the truth tells."""
+    """Return which obstacle of the truth the ground's reason calls by a number of its own; empty: unknown."""
     if not _SEEN.search(ground.reason) or not run.obstacles or not run.number_of_uavs:
         return ""
     row = min(int(np.searchsorted(run.time, ground.ended_at)), len(run.time) - 1)

@@ -28,7 +28,7 @@ from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.surfaces.points import SurfacePoints
 
 _UNEXPLAINED = 0.5
-"""Share of the scans of what moves that contradict that it stands, where it can be told."""
+"""Share of the scans of what moves that contradict that it stands, where that can be tested."""
 _FRAMES, _APART = 20, 0.45
 """Frames whose points are remembered; time from which on one is earlier (s)."""
 _BESIDE = 0.15

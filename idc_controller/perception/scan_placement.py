@@ -233,7 +233,7 @@ class ScanPlacement:
         along, (anywhere, turning) = self._sensors.range_noise, sigmas
         place, rotation = np.ascontiguousarray(pose[0]), rotation_from_quaternion(pose[1])
         returns, rays, (square, angle) = placed_returns(points, directions, place, rotation)
-        # Returns lie on the sensor's rays: how far they are off tells of an error that its noise is not.
+        # Returns lie on the sensor's rays: how far they are off shows an error beyond its noise.
         off = self._scatter[uav].add(float(square), len(returns))
         free = np.empty((0, 3))
         is_sure = scan.is_complete and not scan.is_spoilt and angle <= _OFF_RAY * self._rays.pattern.spacing

@@ -21,7 +21,7 @@ from idc_controller.safety.planner_kernels import within_reach
 
 _IDENTITY = coal.Transform3s.Identity()
 _BROAD = 0.5
-"""Distance (m) beyond the asked one up to which bounds of hull and obstacle let distances be computed."""
+"""Distance (m) beyond the requested one up to which bounds of hull and obstacle let distances be computed."""
 
 
 @dataclass(frozen=True, eq=False)

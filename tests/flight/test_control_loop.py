@@ -39,7 +39,7 @@ def telemetry(time, shift):
             mavlink.MAVLink_local_position_ned_message(round(1000 * time), *spot, 0.0, 0.0, 0.0),
             mavlink.MAVLink_attitude_quaternion_message(round(1000 * time), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         ):
-            yield measurement(received(message, *sender), max(source, 0), time)
+            yield measurement(received(message, *sender), source, time)
 
 
 def flown(loop, steps, shift):

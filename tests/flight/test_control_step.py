@@ -77,14 +77,14 @@ def received(message, system, component):
 def test_telemetry_becomes_measurement_of_its_source(sender, source):
     position = measurement(
         received(mavlink.MAVLink_local_position_ned_message(1234, 1.0, -2.0, -3.0, 0.1, -0.2, 0.3), *sender),
-        2, 7.5,
+        source, 7.5,
     )  # fmt: skip
     assert isinstance(position, Position) and (position.source, position.time) == (source, 7.5)
     assert position.pose == pytest.approx([1.0, -2.0, -3.0])
     assert position.motion == pytest.approx([0.1, -0.2, 0.3])
     attitude = measurement(
         received(mavlink.MAVLink_attitude_quaternion_message(1234, 0.8, 0.6, 0.0, 0.0, 0.1, -0.2, 0.3), *sender),
-        2, 7.5,
+        source, 7.5,
     )  # fmt: skip
     assert isinstance(attitude, Attitude) and (attitude.source, attitude.time) == (source, 7.5)
     assert attitude.pose == pytest.approx([0.8, 0.6, 0.0, 0.0])

@@ -7,11 +7,9 @@ from free_bench import FreeBench
 
 
 @pytest.fixture
-def bench() -> Iterator[FreeBench]:
+def bench(standing: FreeBench) -> FreeBench:
     """A vehicle that stands, and has measured where."""
-    with FreeBench() as bench:
-        bench.run(0.5)
-        yield bench
+    return standing
 
 
 @pytest.fixture

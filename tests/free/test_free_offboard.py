@@ -81,6 +81,16 @@ def test_velocity_in_the_body_frame_turns_with_the_vehicle():
         assert np.hypot(np.diff(x), np.diff(y)).sum() == pytest.approx(1.5 * 49 * 0.02, abs=0.25)
 
 
+def test_velocity_beyond_single_precision_once_it_is_turned_does_not_stop_telemetry(flying):
+    offboard(flying, local(VELOCITY_ONLY & ~YAW, yaw=math.radians(45.0)))
+    flying.run(3.0)
+    largest = float(np.finfo(np.float32).max)
+    flying.streaming[1] = local(VELOCITY_ONLY, velocity=(largest, largest, 0.0), frame=BODY)
+    flying.run(0.2)
+    target = flying.requested(mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED)
+    assert (abs(target.vx) < 0.2 * largest, target.vy) == (True, largest)
+
+
 def test_horizontal_velocity_with_altitude_keeps_the_altitude():
     with FreeBench() as bench:
         bench.take_off()

@@ -9,12 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gcs.mavlink.codec import Codec, gather
-from gcs.mavlink.layout import LAYOUTS, PackedRun
-from gcs.mavlink.scan_sequence import RETURNS, SCAN_END, scan_stamp
+from gcs.mavlink.layout import LAYOUTS, PackedRun, Sample
 from gcs.mavlink.telemetry import scan_end, scan_returns
 from gcs.mavlink.vehicle_link import VehicleLink
 
-POINT = LAYOUTS[RETURNS]
+POINT = LAYOUTS[Sample.RETURNS.value]
 ATTITUDE = mavlink.MAVLink_attitude_quaternion_message(1, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -48,13 +47,13 @@ class Ground:
 
     def receive(self, datagram, now=0.0):
         messages = self.codec.read(datagram)
-        self.link.handle(messages, now)
-        for received in messages:
-            if received.message_id == RETURNS:
+        for received in self.link.handle(messages, now):
+            if received.layout.sample is Sample.RETURNS:
                 part = scan_returns(received)
                 self.counts[part.stamp] = self.counts.get(part.stamp, 0) + len(part.points)
-            elif received.message_id == SCAN_END:
-                self.ends.append(scan_end(received, self.link.statistics.scans))
+            elif received.layout.sample is Sample.SCAN_END:
+                is_complete = self.link.statistics.scans.is_complete(received.time_boot_ms)
+                self.ends.append(scan_end(received, is_complete))
 
 
 @pytest.mark.parametrize("count", [0, 1, 29, 100, 256, 600])
@@ -111,6 +110,7 @@ def test_complete_scan_has_all_its_returns(seed, loss, repetition, swap):
         assert [end.stamp for end in ground.ends if end.is_complete] == list(range(12))
 
 
-def test_stamp_of_a_scans_end_is_in_milliseconds():
-    [received] = Codec(1, 1).decode(Codec(3, 1).encode(end_of(2**32 - 1)))
-    assert scan_stamp(received) == 2**32 - 1
+@pytest.mark.parametrize("stamp", [0, 7, 2**32 - 1, 2**32, (2**64 - 1) // 1000])
+def test_stamp_of_a_scans_end_is_in_milliseconds_modulo_32_bits(stamp):
+    [received] = Codec(1, 1).decode(Codec(3, 1).encode(end_of(stamp)))
+    assert received.time_boot_ms == stamp % 2**32

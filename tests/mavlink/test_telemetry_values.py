@@ -58,7 +58,7 @@ def test_measurement_has_the_values_of_the_message_as_far_as_they_can_be_measure
         ]
     on_wire = [received(message, *sender) for message in messages]
     expected = [(k, values) for k, r in enumerate(on_wire) if (values := expected_values(r.message)) is not None]
-    found, partial = measurements([(message, 2, float(k)) for k, message in enumerate(on_wire)])
+    found, partial = measurements([(message, source, float(k)) for k, message in enumerate(on_wire)])
     for (k, (pose, motion)), sample in zip(expected, found, strict=True):
         assert (sample.time, sample.source) == (k, source)
         assert type(sample) is (Position if k % 2 else Attitude)
@@ -67,12 +67,6 @@ def test_measurement_has_the_values_of_the_message_as_far_as_they_can_be_measure
     whole = {k for k, values in expected if not np.isnan(np.concatenate(values)).any()}
     assert partial == [k for k in range(len(messages)) if k not in whole]
     assert len(expected) - len(whole) > 50 and len(messages) - len(expected) > 10
-
-
-def test_messages_of_other_components_measure_nothing():
-    position = mavlink.MAVLink_local_position_ned_message(1, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
-    for sender in ((3, 77), (3, px4.PAYLOAD_UNIT_COMPONENT), (px4.PAYLOAD_UNIT_SYSTEM, 77)):
-        assert measurements([(received(position, *sender), 0, 0.0)]) == ([], [])
 
 
 def test_set_point_flown_is_tilt_and_thrust():

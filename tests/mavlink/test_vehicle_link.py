@@ -8,6 +8,7 @@ import pytest
 
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
+from gcs.mavlink.layout import Sample
 from gcs.mavlink.vehicle_link import VehicleLink
 
 OWN, UNIT = px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT
@@ -73,6 +74,30 @@ def test_each_kind_of_telemetry_has_the_time_at_which_it_came_last(linked, messa
     assert received_at(linked.link) == expected
 
 
+TARGET = mavlink.MAVLink_attitude_target_message(STAMP, 0, [1.0, 0.0, 0.0, 0.0], 0.0, 0.0, 0.0, 0.5)
+RETURN = mavlink.MAVLink_obstacle_distance_3d_message(STAMP, 0, 12, 1, 1.0, 2.0, 3.0, 0.1, 9.0)
+SCAN_END = mavlink.MAVLink_obstacle_distance_message(STAMP * 1000, 0, [65535] * 72, 5, 5, 900, 0.0, 0.0, 12)
+
+
+@pytest.mark.parametrize(
+    ("system", "component", "expected"),
+    [
+        (3, OWN, [Sample.ATTITUDE, Sample.POSITION, Sample.SETPOINT, Sample.RETURNS, Sample.SCAN_END]),
+        (px4.PAYLOAD_UNIT_SYSTEM, UNIT, [Sample.ATTITUDE, Sample.POSITION]),
+        (3, UNIT, []),
+        (3, 77, []),
+        (px4.PAYLOAD_UNIT_SYSTEM, 77, []),
+    ],
+)
+def test_samples_are_those_of_the_autopilot_and_poses_and_motions_of_the_payload(linked, system, component, expected):
+    sender = Codec(system, component)
+    messages = attitude(), heartbeat(), position(), TARGET, RETURN, SCAN_END
+    datagram = b"".join(sender.encode(message) for message in messages)
+    samples = linked.link.handle(Codec(254, 1).read(datagram), 7.0)
+    assert [received.layout.sample for received in samples] == expected
+    assert {received.time_boot_ms for received in samples} <= {STAMP}
+
+
 def test_telemetry_is_complete_with_attitude_and_position(linked):
     linked.send(7.0, attitude())
     assert (linked.link.telemetry_received_at, linked.link.complete_telemetry_received_at) == (7.0, NEVER)
@@ -97,6 +122,25 @@ def test_answer_to_a_timesync_request_gives_the_latency_and_a_request_of_the_veh
     assert linked.link.clock.delay == 0.0
     linked.send(10.08, mavlink.MAVLink_timesync_message(1, sent))
     assert linked.link.clock.delay == pytest.approx(0.04)
+
+
+def test_companion_answers_and_reports_nothing_for_its_vehicle(linked):
+    link = linked.link
+    sent = link.clock.request(10.0)
+    link.requests.want_parameters(("THR_MAX",))
+    arming = link.requests.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1.0)
+    messages = [
+        mavlink.MAVLink_timesync_message(1, sent), sys_status(PREARM, 0), heartbeat(128, px4.MODE_OFFBOARD),
+        mavlink.MAVLink_param_value_message(b"THR_MAX", 27.5, mavlink.MAV_PARAM_TYPE_REAL32, 1, 0),
+        mavlink.MAVLink_command_ack_message(arming.number, mavlink.MAV_RESULT_UNSUPPORTED),
+    ]  # fmt: skip
+    linked.send(10.04, *messages, component=77)
+    assert (link.status.prearm_ok, link.status.armed, link.status.parameters) == (None, False, {})
+    assert arming.result is None
+    linked.send(10.08, *messages)  # the autopilot's own
+    assert link.clock.delay == pytest.approx(0.04)
+    assert (link.status.prearm_ok, link.status.armed, link.status.parameters) == (False, True, {"THR_MAX": 27.5})
+    assert arming.result == mavlink.MAV_RESULT_UNSUPPORTED
 
 
 def test_mode_and_arming_are_those_of_the_autopilots_heartbeat(linked):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as m
@@ -58,13 +57,6 @@ def reached(bench: FreeBench) -> list[int]:
 
 
 @pytest.fixture
-def standing() -> Iterator[FreeBench]:
-    with FreeBench() as bench:
-        bench.run(0.5)
-        yield bench
-
-
-@pytest.fixture
 def on_mission(standing: FreeBench) -> FreeBench:
     """A vehicle that flies PLAN, and has taken off."""
     upload(standing, *PLAN)
@@ -112,6 +104,13 @@ def test_mission_cleared_in_flight_leaves_the_vehicle_where_it_is(on_mission: Fr
     assert current(on_mission)[1] == m.MISSION_STATE_NO_MISSION
     assert on_mission.armed() and abs(on_mission.position() - place).max() < 4.0
     assert on_mission.mode_of() == "AUTO.LOITER"
+
+
+def test_refused_start_of_a_mission_leaves_its_progress(on_mission: FreeBench) -> None:
+    on_mission.set_parameter("GF_MAX_HOR_DIST", 3.0)
+    assert on_mission.command(m.MAV_CMD_MISSION_START, 0) == m.MAV_RESULT_DENIED
+    on_mission.run(1.5)
+    assert current(on_mission) == (1, m.MISSION_STATE_ACTIVE)
 
 
 def test_mission_that_cannot_be_started_is_refused_at_its_start(standing: FreeBench) -> None:

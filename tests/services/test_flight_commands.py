@@ -92,6 +92,8 @@ def test_place_in_another_frame_is_refused_as_such(number: int, frame: int) -> N
         (command(178, 1, -2.0), 2), (command(178, 1, math.inf), 2), (command(178, 1, NAN), 2), (command(193, 2), 1),
         (command(300, -1), 1), (command(300, 1.5), 1), (command(192, 0, 0, 0, 0, 91.0, 0.0, 0.0), 5),
         (command(192, 0, 0, 0, 0, 0.0, -181.0, 0.0), 6), (command(192, 0, 0, 0, 0, 0, 0, math.inf), 7),
+        (command(192, 0, 1, 0, math.inf), 4), (command(192, 0, 1, 0, -math.inf), 4),
+        (command(22, 0, 0, 0, NAN, NAN, NAN, math.inf), 7),
         (command(262, 99), 1), (command(262, NAN), 1),
         (command(115, NAN), 1), (command(115, 361), 1), (command(115, 0, -1), 2), (command(115, 0, 0, 2), 3),
         (command(115, 0, 0, 0, 2), 4), (command(179, 2), 1), (command(179, 0, 0, 0, 0, NAN, 8, 500), 5),
@@ -105,6 +107,13 @@ def test_wrong_parameter_is_named_and_nothing_is_asked(message: Any, parameter: 
     bench = ServiceBench()
     result, text, _ = bench.ask(message)
     assert (result, bench.wrong_parameter) == (DENIED, parameter) and "denied" in text and bench.aircraft.calls == []
+
+
+@pytest.mark.parametrize("flags", [0, 2, 3, NAN])
+def test_reposition_without_a_change_of_mode_is_unsupported_as_by_px4(flags: float) -> None:
+    bench = ServiceBench()
+    result, text, _ = bench.ask(command(192, -1, flags, 0, NAN, NAN, NAN, NAN))
+    assert result == UNSUPPORTED and "CHANGE_MODE" in text and bench.aircraft.calls == []
 
 
 @pytest.mark.parametrize("message", [command(178, 1, -1), command(185, 0)])

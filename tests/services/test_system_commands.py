@@ -47,6 +47,9 @@ def test_accepted_interval_is_one_that_is_sent() -> None:
     result, text, _ = bench.ask(command(511, HEARTBEAT, 100))
     assert result == DENIED and bench.wrong_parameter == 2 and "0.004" in text
     assert bench.ask(command(511, HEARTBEAT, 4000))[0] == ACCEPTED
+    assert bench.ask(command(511, HEARTBEAT, 3e9))[0] == DENIED
+    assert bench.ask(command(511, HEARTBEAT, 2e9))[0] == ACCEPTED
+    assert bench.ask(command(510, HEARTBEAT))[2][0].interval_us == 2_000_000_000
     assert bench.ask(command(511, 9999, 100_000))[0] == UNSUPPORTED
 
 

@@ -3,7 +3,7 @@
 from gcs.mavlink.telemetry import measurements
 
 
-def measurement(received, uav, time):
-    """Return the measurement in a message of UAV ``uav`` (0 .. N-1), true at ``time`` (s); None: there is none."""
-    found, _ = measurements([(received, uav, time)])
+def measurement(received, source, time):
+    """Return the measurement in a message of a ``source``, true at ``time`` (s); None: there is none."""
+    found, _ = measurements([(received, source, time)])
     return found[0] if found else None

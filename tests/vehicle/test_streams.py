@@ -200,6 +200,14 @@ def addressees(served, now):
     return {address for _, address in served.datagrams_to_send(Builders(), now)}
 
 
+def test_newcomer_gets_no_acknowledgement_of_a_message_that_is_too_long_for_it():
+    new = Peer(GROUND, IDENTITIES, {}, SETTINGS)
+    new.hear(60, addressed=False)
+    new.reply(mavlink.MAVLink_statustext_message(4, b"x" * 50))
+    new.reply(mavlink.MAVLink_extended_sys_state_message(0, 1))
+    assert sent(new, 0.0) == [(OWN, HEARTBEAT)]
+
+
 def test_vehicle_without_peers_is_never_due_and_one_with_clients_at_once():
     assert peers().next_due == math.inf and addressees(peers(), 0.0) == set()
     sending = peers(GROUND)

@@ -198,7 +198,7 @@ def test_vehicle_on_a_payload_does_not_obey_a_command_to_all_systems(bench: Benc
 
 
 @pytest.mark.parametrize(
-    "message", [command(22), command(192), command(178, 1, 3.0), command(300), command(193, 0), command(193, 1)]
+    "message", [command(22), command(192, -1, 1), command(178, 1, 3.0), command(300), command(193, 0), command(193, 1)]
 )
 def test_what_would_tip_the_payload_is_denied_with_one_text(flying: Bench, message: Any) -> None:
     before = flying.vehicle.autopilot.mode

@@ -167,7 +167,7 @@ class FlightState:
         self.mode = px4.MODE_HOLD
         self.land.start()
 
-    def is_on_way(self, plan: StopPlan, now: float) -> bool:
+    def begins_on_path(self, plan: StopPlan, now: float) -> bool:
         """Return True if a stop plan begins where the vehicle will be then, or leads to where it is."""
         measured = self.navigation.estimate
         if measured is None:

@@ -10,7 +10,7 @@ from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.setpoint_stream import Setpoint
 
 _KEPT = 500
-"""Set-points that a stream remembers, to tell repeats: of 10 s at 50 Hz."""
+"""Set-points that a stream remembers, to detect repeats: of 10 s at 50 Hz."""
 _COPIES = 0.1
 """Time (s) in which copies that are sent at once arrive."""
 _HALF_WRAP = 2**31  # ms

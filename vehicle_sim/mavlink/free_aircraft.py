@@ -77,9 +77,13 @@ class FreeAircraft(SimulatedAircraft):
         """Fly the mission from item ``first`` on; as PX4 it arms for it."""
         if not 0 <= first < max(len(self._items), 1):
             return denied(f"Mission denied: there is no item {first}")
-        self._autopilot.state.mission.restart(first)
+        state = self._autopilot.state
+        before, state.mission = state.mission, state.mission.from_item(first)
         answer = self._autopilot.enter_mode(px4.MODE_MISSION, now)
-        return self._autopilot.arm(now) if answer == ACCEPTED else answer
+        if answer != ACCEPTED:
+            state.mission = before
+            return answer
+        return self._autopilot.arm(now)
 
     def pause(self, now: float) -> Answer:
         """Hold; the mission's current item stays."""

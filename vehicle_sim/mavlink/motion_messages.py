@@ -112,7 +112,7 @@ def global_position(report: Report, now: float) -> Built:
 
 
 def gps_raw(report: Report, now: float) -> Built:
-    """Place, speed and course as a satellite receiver tells them."""
+    """Place, ground speed and course over ground of a GNSS receiver."""
     measured = report.own_state
     if measured is None:
         return ()

@@ -77,7 +77,7 @@ class SetpointServer:
         # The ground estimates this clock from stamps of 32 bits, which may have begun anew since.
         ahead += round((plan.start - ahead - now) / STAMP_WRAP) * STAMP_WRAP
         plan = plan._replace(start=plan.start - ahead, descent=plan.descent - ahead)
-        if not self._autopilot.state.is_on_way(plan, now):
+        if not self._autopilot.state.begins_on_path(plan, now):
             self.refused += 1
         elif self._owner.is_new_plan(content.session, content.number):
             self._autopilot.take_stop_plan(plan)

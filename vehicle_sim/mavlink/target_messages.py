@@ -20,6 +20,7 @@ _GLOBAL_TARGET = LAYOUTS[mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT]
 _ROTORS = 4
 _PULSE_MIN, _PULSE_RANGE = 1000.0, 1000.0  # us
 _OUTPUTS = 32  # of ACTUATOR_OUTPUT_STATUS
+_FLOAT_MAX = (2.0 - 2.0**-23) * 2.0**127  # in single precision
 
 
 def attitude_target(report: Report, now: float) -> Built:
@@ -113,7 +114,8 @@ def _motion_of(target: PositionTarget) -> tuple[float, ...]:
 
 
 def _known(values: Sequence[float]) -> tuple[float, ...]:
-    return tuple(0.0 if math.isnan(value) else value for value in values)
+    # A vector of a body frame may exceed single precision once it is turned.
+    return tuple(0.0 if math.isnan(value) else min(max(value, -_FLOAT_MAX), _FLOAT_MAX) for value in values)
 
 
 def _mask(target: PositionTarget, position: Vector) -> int:

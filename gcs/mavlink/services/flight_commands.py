@@ -25,10 +25,14 @@ _ITEMS_MAX = 1 << 16
 _ORBIT_HEADINGS = mavlink.ORBIT_YAW_BEHAVIOUR_HOLD_FRONT_TANGENT_TO_CIRCLE + 1
 """Those of a remote control are not."""
 _WHOLE_TURN = 360.0
+_MODE_UNCHANGED = Answer(
+    mavlink.MAV_RESULT_UNSUPPORTED, "Reposition denied: param2 is not 1 (MAV_DO_REPOSITION_FLAGS_CHANGE_MODE)", 2
+)
+"""PX4's answer to a reposition that is not to change the mode."""
 
 
 class FlightCommands:
-    """What each command asks the aircraft to do."""
+    """Checks the parameters of each command, and has the aircraft carry it out."""
 
     def __init__(self, aircraft: Aircraft, source: MessageSource) -> None:
         """``source`` has the place of home."""
@@ -71,18 +75,20 @@ class FlightCommands:
 
     def _take_off(self, message: Command, request: Request) -> Answer:
         """Take off to an altitude (NaN: MIS_TAKEOFF_ALT above the ground)."""
-        place = self._place(message, request)
-        if place is None:
-            return UNSUPPORTED_FRAME
+        place = self._valid_place("Takeoff", message, request)
+        if isinstance(place, Answer):
+            return place
         return self._aircraft.take_off(place.altitude, request.now)
 
     def _reposition(self, message: Command, request: Request) -> Answer:
-        """Fly to a place and hold there; speed (param1), yaw (param4, rad)."""
-        place = self._place(message, request)
-        if place is None:
-            return UNSUPPORTED_FRAME
-        if (wrong := _wrong_place("Reposition", place)) is not None:
-            return wrong
+        """Fly to a place and hold there; speed (param1), param2 1 (the mode changes), yaw (param4, rad)."""
+        place = self._valid_place("Reposition", message, request)
+        if isinstance(place, Answer):
+            return place
+        if message.param2 != mavlink.MAV_DO_REPOSITION_FLAGS_CHANGE_MODE:
+            return _MODE_UNCHANGED
+        if math.isinf(message.param4):
+            return denied("Reposition denied: the yaw is infinite", 4)
         speed = message.param1 if message.param1 > 0.0 else math.nan
         return self._aircraft.reposition(Reposition(*place, message.param4, speed), request.now)
 
@@ -115,11 +121,9 @@ class FlightCommands:
 
     def _orbit(self, message: Command, request: Request) -> Answer:
         """Fly on a circle: param1 radius, negative to the left, param2 m/s, param3 heading, param4 rad (0: no end)."""
-        place = self._place(message, request)
-        if place is None:
-            return UNSUPPORTED_FRAME
-        if (wrong := _wrong_place("Orbit", place)) is not None:
-            return wrong
+        place = self._valid_place("Orbit", message, request)
+        if isinstance(place, Answer):
+            return place
         radius, speed, angle = message.param1, message.param2, message.param4
         if radius == 0.0 or math.isinf(radius):
             return denied(f"Orbit denied: the radius is {radius:g} m", 1)
@@ -139,11 +143,9 @@ class FlightCommands:
             return self._aircraft.set_home(None, request.now)
         if message.param1 != 0.0:
             return denied(f"Home denied: param1 {message.param1:g} is neither 0 nor 1", 1)
-        place = self._place(message, request)
-        if place is None:
-            return UNSUPPORTED_FRAME
-        if (wrong := _wrong_place("Home", place)) is not None:
-            return wrong
+        place = self._valid_place("Home", message, request)
+        if isinstance(place, Answer):
+            return place
         for value, parameter in zip(place, (5, 6, 7), strict=True):
             if math.isnan(value):
                 return denied(f"Home denied: {place._fields[parameter - 5]} is not given", parameter)
@@ -186,6 +188,16 @@ class FlightCommands:
         latitude, longitude = (math.nan if x in _NOT_GIVEN else x * 1e-7 for x in (message.x, message.y))
         return Place(latitude, longitude, base + message.z)
 
+    def _valid_place(self, what: str, message: Command, request: Request) -> Place | Answer:
+        """Return the place in a command, or the refusal of the command because of it."""
+        place = self._place(message, request)
+        if place is None:
+            return UNSUPPORTED_FRAME
+        for value, limit, parameter in ((place.latitude, 90.0, 5), (place.longitude, 180.0, 6)):
+            if abs(value) > limit:
+                return denied(f"{what} denied: {value:g} deg is no place", parameter)
+        return denied(f"{what} denied: the altitude is infinite", 7) if math.isinf(place.altitude) else place
+
     def _home_altitude(self, now: float) -> float:
         """Return the altitude of home (m above mean sea level), as HOME_POSITION has it; NaN: there is none yet."""
         built = self._source.builders[_HOME](now)
@@ -194,11 +206,3 @@ class FlightCommands:
         layout, payload = built[0]
         home: Any = layout.message(payload)
         return float(home.altitude) * 1e-3
-
-
-def _wrong_place(what: str, place: Place) -> Answer | None:
-    """Return the refusal of a command because of its place; None: nothing is wrong with it."""
-    for value, limit, parameter in ((place.latitude, 90.0, 5), (place.longitude, 180.0, 6)):
-        if abs(value) > limit:
-            return denied(f"{what} denied: {value:g} deg is no place", parameter)
-    return denied(f"{what} denied: the altitude is infinite", 7) if math.isinf(place.altitude) else None

@@ -203,8 +203,10 @@ class Peer:
         codec = self._codecs[_AUTOPILOT]
         heartbeat = [codec.frame(message) for message in sample.messages(_HEARTBEAT) if isinstance(message, tuple)]
         frames: list[bytes] = []
-        for frame in [*self._replies, *heartbeat]:
-            if self._sent + len(frame) <= self._received:
+        for queue in (self._replies, heartbeat):
+            for frame in queue:
+                if self._sent + len(frame) > self._received:
+                    break  # with what follows, which may acknowledge it
                 self._sent += len(frame)
                 frames.append(frame)
         self._replies = []

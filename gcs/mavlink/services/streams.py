@@ -14,7 +14,7 @@ from gcs.mavlink.settings import PeerSettings
 
 _STOPPED, _NOT_AVAILABLE = -1, 0
 """Intervals in MESSAGE_INTERVAL (us)."""
-_INTERVAL_MAX = 3600.0  # s
+_INTERVAL_MAX = 2000.0  # s; MESSAGE_INTERVAL holds 2147 s
 
 
 class StreamRequests:

@@ -16,7 +16,7 @@ _READ, _WRITE, _RESET = 0.0, 1.0, 2.0
 
 
 class SystemCommands:
-    """What is asked of an autopilot beside flying."""
+    """Commands to the autopilot beside those of flight."""
 
     def __init__(self, aircraft: Aircraft, parameters: ParameterTable, streams: StreamRequests) -> None:
         self._aircraft = aircraft

@@ -1,7 +1,7 @@
 """Bounds on the pop of a plan: how much its crackle changes at each knot of the snap.
 
 The set-points of the UAVs' tilt follow the snap and its first two derivatives, because the attitude loops are inverted
-(:mod:`idc_controller.trajectory.flatness`): a plan whose crackle jumps asks for a tilt that jumps.
+(:mod:`idc_controller.trajectory.flatness`): a plan whose crackle jumps needs a tilt that jumps.
 """
 
 import numpy as np

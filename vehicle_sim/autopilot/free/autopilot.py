@@ -101,18 +101,20 @@ class FreeAutopilot(Autopilot):
 
     def enter_mode(self, custom_mode: int, now: float) -> Answer:
         """Any mode but OFFBOARD; a take-off is to the height of the parameter."""
-        self.state.take_off_altitude = math.nan
         return self._enter(custom_mode)
 
-    def _enter(self, custom_mode: int) -> Answer:
-        answer = modes.enter_mode(self.state, custom_mode)
+    def _enter(self, custom_mode: int, take_off_altitude: float = math.nan) -> Answer:
+        state = self.state
+        before, state.take_off_altitude = state.take_off_altitude, take_off_altitude
+        answer = modes.enter_mode(state, custom_mode)
+        if answer != ACCEPTED:
+            state.take_off_altitude = before
         self._decide_anew()
         return answer
 
     def take_off(self, altitude: float, now: float) -> Answer:
         """Take off to ``altitude`` (m above the ground; NaN: the parameter's), at once or when it is armed."""
-        self.state.take_off_altitude = altitude
-        return self._enter(px4.MODE_TAKEOFF)
+        return self._enter(px4.MODE_TAKEOFF, altitude)
 
     def go_to(self, position: Vector, yaw: float, speed: float, now: float) -> Answer:
         """Fly to ``position`` (NED, m; NaN: where it is) and hold there. ``yaw`` in rad, ``speed`` in m/s; NaN: as is.

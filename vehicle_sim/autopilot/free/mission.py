@@ -64,6 +64,10 @@ class Mission:
         self.current, self.finished = first, False
         self._jumps.clear()
 
+    def from_item(self, first: int) -> "Mission":
+        """Return the same mission, not begun yet, from item ``first`` on."""
+        return Mission(self.steps, first, on_reached=self.on_reached)
+
     def done(self) -> None:
         """Pass on from the current step, which has been done; the last one stays current."""
         index, step = self.current, self.step
