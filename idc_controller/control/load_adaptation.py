@@ -3,7 +3,6 @@
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.control.force_components import limited
 from idc_controller.control.settings import ControllerSettings
 from idc_controller.estimation.measurements import Estimate
 from idc_controller.estimation.wind import WindEstimator
@@ -44,8 +43,8 @@ class LoadAdaptation:
         # Drag that comes on top from now on changes what is left over, not the whole.
         drag, uav_drag = _drag(self.wind.air, velocity)
         force, uav_force = load.force + drag_before - drag, load.uav_force + uav_drag_before - uav_drag
-        force += share * (limited(estimate.force, limit) - drag - force)
-        uav_force += share * (limited(estimate.uav_force, self._uav_limit) - uav_drag - uav_force)
+        force += share * (_limited(estimate.force, limit) - drag - force)
+        uav_force += share * (_limited(estimate.uav_force, self._uav_limit) - uav_drag - uav_force)
         least, most = self.settings.mass_share
         mass = min(max(mass, least * self.parameters.m_0), most * self.parameters.m_0)
         self.estimate = Load(mass, force, uav_force, self.wind.air)
@@ -61,3 +60,9 @@ def _median(vectors: Array) -> Array:
     half = len(vectors) // 2
     ordered = [sorted(values) for values in zip(*vectors.tolist(), strict=True)]
     return np.array([(values[half] + values[~half]) / 2.0 for values in ordered])
+
+
+def _limited(vectors: Array, limit: float) -> Array:
+    """Return ``vectors`` (..., 3), those that are longer than ``limit`` shortened to that."""
+    norms = np.sqrt((vectors * vectors).sum(axis=-1, keepdims=True))
+    return np.asarray(vectors * (limit / np.maximum(norms, limit)))
