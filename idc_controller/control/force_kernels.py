@@ -67,6 +67,27 @@ def tracking_error(
 
 
 @kernel
+def followed(force: Array2, estimated: Array2, before: Array1, after: Array1, share: float, limit: float) -> Array2:
+    """Return the constant forces (K, 3) (N) that follow the estimated ones, drag and all.
+
+    Args:
+        force: constant forces so far (K, 3) (N).
+        estimated: estimated forces (K, 3) (N), each shortened to ``limit`` (N).
+        before, after: drag that comes on top so far and from now on (3,) (N): it changes what is left over.
+        share: of the difference that is followed.
+        limit: of the estimated forces (N).
+    """
+    result = np.empty_like(force)
+    for i in range(len(force)):
+        estimate = estimated[i].copy()
+        _limit(estimate, limit)
+        for axis in range(3):
+            rest = force[i, axis] + before[axis] - after[axis]
+            result[i, axis] = rest + share * (estimate[axis] - after[axis] - rest)
+    return result
+
+
+@kernel
 def fill_input_bounds(bounds: Array1, u: Array2, stages: Indices1, hover: Array1, lower: Array1, upper: Array1) -> None:
     """Fill the first M 6 N of ``bounds`` with how far set-points are from their limits, upper then lower ones by stage.
 

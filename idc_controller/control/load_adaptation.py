@@ -3,6 +3,7 @@
 import numpy as np
 
 from idc_controller.arrays import Array
+from idc_controller.control.force_kernels import followed
 from idc_controller.control.settings import ControllerSettings
 from idc_controller.estimation.measurements import Estimate
 from idc_controller.estimation.wind import WindEstimator
@@ -40,11 +41,9 @@ class LoadAdaptation:
         # What one of the UAVs has of its own is no wind.
         self.wind.learn(estimate.force, _median(estimate.uav_force), velocity)
         limit = self._weight * (self.settings.force_limit if self.wind.air is None else self.settings.drag_limit)
-        # Drag that comes on top from now on changes what is left over, not the whole.
         drag, uav_drag = _drag(self.wind.air, velocity)
-        force, uav_force = load.force + drag_before - drag, load.uav_force + uav_drag_before - uav_drag
-        force += share * (_limited(estimate.force, limit) - drag - force)
-        uav_force += share * (_limited(estimate.uav_force, self._uav_limit) - uav_drag - uav_force)
+        force = followed(load.force[None], estimate.force[None], drag_before, drag, share, limit)[0]
+        uav_force = followed(load.uav_force, estimate.uav_force, uav_drag_before, uav_drag, share, self._uav_limit)
         least, most = self.settings.mass_share
         mass = min(max(mass, least * self.parameters.m_0), most * self.parameters.m_0)
         self.estimate = Load(mass, force, uav_force, self.wind.air)
@@ -60,9 +59,3 @@ def _median(vectors: Array) -> Array:
     half = len(vectors) // 2
     ordered = [sorted(values) for values in zip(*vectors.tolist(), strict=True)]
     return np.array([(values[half] + values[~half]) / 2.0 for values in ordered])
-
-
-def _limited(vectors: Array, limit: float) -> Array:
-    """Return ``vectors`` (..., 3), those that are longer than ``limit`` shortened to that."""
-    norms = np.sqrt((vectors * vectors).sum(axis=-1, keepdims=True))
-    return np.asarray(vectors * (limit / np.maximum(norms, limit)))

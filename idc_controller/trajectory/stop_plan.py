@@ -20,11 +20,9 @@ from idc_controller.model.linear import StateLayout
 from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.flatness import FlatReference
 from idc_controller.trajectory.settings import BrakingSettings
-from idc_controller.trajectory.trajectory_kernels import control_points, motions_at_rest
+from idc_controller.trajectory.stop_plan_kernels import control_points, motions_at_rest, on_quartic
 
 _layout = cache(StateLayout)
-_BINOMIALS, _POWERS = np.array([1.0, 4.0, 6.0, 4.0, 1.0]), np.arange(5)
-"""Of the Bernstein polynomials of a quartic."""
 
 
 class Braking(NamedTuple):
@@ -60,8 +58,7 @@ class StopPlan(NamedTuple):
         """
         points = (self.control_points - parameters.p[:, None]).mean(axis=0)
         points[:, 2] += parameters.l.mean()
-        share = np.clip(elapsed / self.duration, 0.0, 1.0)[:, None]
-        return np.asarray((_BINOMIALS * share**_POWERS * (1.0 - share) ** _POWERS[::-1]) @ points)
+        return on_quartic(points, np.clip(elapsed / self.duration, 0.0, 1.0))
 
 
 def stop_plan(
