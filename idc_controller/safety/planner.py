@@ -132,9 +132,9 @@ class Planner:
         return self._layout[1]
 
     def _problem(self, start: Array, step: PlanningStep, layout: _Layout) -> QuadraticProgram:
-        """Return the QP in (z, slacks), in the matrices of its ``layout``."""
+        """Return the QP in (z, slacks)."""
         n = 3 * self.settings.chain.knots
-        G, bounds, row = layout.G, [], 0
+        G, bounds, row = layout.G.copy(), [], 0
         for constraint in self.constraints:
             rows, h = constraint.rows(step)
             G[row : row + len(h), :n] = rows
