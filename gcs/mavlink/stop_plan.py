@@ -16,8 +16,9 @@ POINTS = 5
 """Control points of a quartic."""
 
 _TUNNEL = LAYOUTS[mavlink.MAVLINK_MSG_ID_TUNNEL]
+_HEAD = struct.Struct("<H3B")
+"""Fields of TUNNEL before its content: packed number by number, that would take longer than all the rest."""
 _CONTENT = struct.Struct(f"<2I2q2f{3 * POINTS}f")
-_CAPACITY = 128
 _US = 1e6
 
 
@@ -44,9 +45,8 @@ def stop_plan_message(system_id: int, plan: StopPlanContent) -> Packed:
     content = _CONTENT.pack(
         session, number, round(start * _US), round(descent * _US), duration, yaw, *chain.from_iterable(points)
     )
-    return _TUNNEL.pack(
-        PAYLOAD_TYPE, system_id, px4.AUTOPILOT_COMPONENT, len(content), *content.ljust(_CAPACITY, b"\0")
-    )
+    head = _HEAD.pack(PAYLOAD_TYPE, system_id, px4.AUTOPILOT_COMPONENT, len(content))
+    return _TUNNEL, (head + content).rstrip(b"\0")
 
 
 def read_stop_plan(fields: tuple[Any, ...]) -> StopPlanContent | None:

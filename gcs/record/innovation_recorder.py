@@ -30,7 +30,7 @@ class InnovationRecorder(TableWriter):
         self._learnt: dict[SensorKey, float] = {}
         """Time of the last sample of each sensor that counts (s): one that is replayed counts once."""
         self._channels: list[tuple[SensorKey, Channel, str]] = []
-        """All, with the name of their source."""
+        """All, with the cells that name them."""
         self._grid = Grid(INTERVAL)
 
     def record(self, estimator: Estimator, estimate: Estimate, time: float) -> None:
@@ -51,18 +51,18 @@ class InnovationRecorder(TableWriter):
 
     def _write_states(self, estimator: Estimator, time: float) -> None:
         self._channels = self._channels or [
-            (key, Channel(*key, part), "payload" if key[0] == PAYLOAD else f"vehicle {key[0] + 1}")
+            (key, channel, f"{'payload' if key[0] == PAYLOAD else f'vehicle {key[0] + 1}'},{channel.name}")
             for key in estimator.measurement_model.observations
-            for part in (0, 1)
+            for channel in (Channel(*key, 0), Channel(*key, 1))
         ]
         states = dict.fromkeys(_isolated(estimator.health), "isolated")
         states |= dict.fromkeys(estimator.health.stuck_channels, "stuck")
-        at, rows = round(time, 6), []
-        for key, channel, name in self._channels:
-            ratio = self._largest[key][channel.part] if key in self._largest else math.nan
-            state = states.get(channel) if states else None
-            rows.append((at, name, channel.name, round(ratio, _DIGITS), state or ("rejected" if ratio > 1.0 else "ok")))
-        self.write_numbers(*rows)
+        at, lines, largest = round(time, 6), [], self._largest
+        for key, channel, cells in self._channels:
+            ratio = largest[key][channel.part] if key in largest else math.nan
+            state = (states and states.get(channel)) or ("rejected" if ratio > 1.0 else "ok")
+            lines.append(f"{at!r},{cells},{round(ratio, _DIGITS)!r},{state}\n")
+        self.append("".join(lines).encode())
 
 
 def _isolated(health: SensorHealth) -> set[Channel]:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 REFERENCE_INTERVAL = 0.02  # s, the grid of truth.csv
 _SD_DIGITS = 7
-_SD_ORDER = [*range(3), *range(6, 9), *range(3, 6), *range(9, 15)]
+_SD_ORDER = np.array([*range(3), *range(6, 9), *range(3, 6), *range(9, 15)])
 """Of the columns, in the estimator's order: position, velocity, attitude, rates, force."""
 
 

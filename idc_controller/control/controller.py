@@ -11,11 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.control.force_components import (
-    limited,
-    setpoints_from_force_components,
-    state_in_force_components,
-)
+from idc_controller.control.force_kernels import directions, setpoints, tracking_error
 from idc_controller.control.ground_controller import GroundController
 from idc_controller.control.load_adaptation import LoadAdaptation
 from idc_controller.control.mpc import Tracker
@@ -122,19 +118,20 @@ class IntegratedDecisionController:
         # the middle of it leaves the least error.
         flat = reference.at(estimate.time + self._times)
         stages = flat.part(slice(0, -1))
-        error = self._error(estimate.x, stages.x[0])
+        hover, s = self._hover, self.settings
+        error = tracking_error(
+            estimate.x, stages.x[0], hover, self.layout.n.start, s.position_error_limit, s.velocity_error_limit
+        )
         ready = self._stopwatch()
         output = (self._ground_controller if on_ground else self.tracker).track(error, stages)
         tracked = self._stopwatch()
-        u = setpoints_from_force_components(
-            output.delta_u, flat.u[-1], self.layout, self._hover, self.settings.least_lift
-        )
+        u = setpoints(output.delta_u, flat.u[-1], hover, s.least_lift)
         if not on_ground:
             u = self.safety.correct(estimate.time, u, estimate)
         return Decision(
             time=estimate.time,
             u=u,
-            directions=_directions(u[self.layout.n_setpoint].reshape(-1, 2)),
+            directions=directions(u),
             thrusts=u[self.layout.f_setpoint],
             reference=reference,
             flat=stages,
@@ -146,20 +143,6 @@ class IntegratedDecisionController:
             sight=self.guidance.sight,
             detours=self.guidance.detours,
         )
-
-    def _error(self, x: Array, reference: Array) -> Array:
-        """Return the error (12 + 11 N,) of a state about its reference, in components of force, within limits."""
-        layout = self.layout
-        of_state, of_reference = state_in_force_components(np.stack([x, reference]), layout, self._hover)
-        error = np.asarray(of_state - of_reference)
-        error[layout.r_0] = limited(error[layout.r_0], self.settings.position_error_limit)
-        error[layout.v_0] = limited(error[layout.v_0], self.settings.velocity_error_limit)
-        return error
-
-
-def _directions(n: Array) -> Array:
-    """Return the unit thrust vectors (N, 3), NED, with level parts ``n`` (N, 2)."""
-    return np.column_stack([n, -np.sqrt(np.maximum(1.0 - (n[:, 0] ** 2 + n[:, 1] ** 2), 0.0))])
 
 
 def plan(

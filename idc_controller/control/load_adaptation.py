@@ -1,9 +1,11 @@
 """The load that the reference is made for: payload mass, disturbance forces and wind, learnt from the estimates."""
 
+import math
+
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.control.force_components import limited
+from idc_controller.control.force_kernels import followed
 from idc_controller.control.settings import ControllerSettings
 from idc_controller.estimation.measurements import Estimate
 from idc_controller.estimation.wind import WindEstimator
@@ -45,11 +47,10 @@ class LoadAdaptation:
         # What one of the UAVs has of its own is no wind.
         self.wind.learn(estimate.force, _median(estimate.uav_force), velocity)
         limit = self._weight * (self.settings.force_limit if self.wind.air is None else self.settings.drag_limit)
-        # Drag that comes on top from now on changes what is left over, not the whole.
         drag, uav_drag = _drag(self.wind.air, velocity)
-        force, uav_force = load.force + drag_before - drag, load.uav_force + uav_drag_before - uav_drag
+        force = load.force + drag_before - drag
         force += share * (self._bounded(estimate.force, limit, mass) - drag - force)
-        uav_force += share * (limited(estimate.uav_force, self._uav_limit) - uav_drag - uav_force)
+        uav_force = followed(load.uav_force, estimate.uav_force, uav_drag_before, uav_drag, share, self._uav_limit)
         self.estimate = Load(mass, force, uav_force, self.wind.air)
 
     def _bounded(self, force: Array, level_max: float, mass: float) -> Array:
@@ -59,8 +60,9 @@ class LoadAdaptation:
         """
         least, most = self.settings.mass_share
         own = mass * self.parameters.g
-        level = limited(force[:2], level_max)
-        return np.array([*level, min(max(own + force[2], least * self._weight), most * self._weight) - own])
+        x, y, z = force.tolist()
+        scale = level_max / max(math.hypot(x, y), level_max)
+        return np.array([scale * x, scale * y, min(max(own + z, least * self._weight), most * self._weight) - own])
 
 
 def _drag(air: Air | None, velocity: Array) -> tuple[Array, Array]:

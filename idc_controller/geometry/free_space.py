@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.arrays import Array, Mask
 from idc_controller.errors import TrajectoryError
+from idc_controller.geometry.free_space_kernels import keep_away
 from idc_controller.geometry.shape import Shape
 
 if TYPE_CHECKING:
@@ -129,9 +130,6 @@ class BoundingCylinder:
         return cls(radius, float(top.max()), parameters.payload.below, (north, east), rounding)
 
 
-_GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
-_SEARCH_STEPS = 20
-"""Of golden section: to 1e-4 of a segment."""
 TOUCHING = 1e-6
 """m; a place that keeps the margin to within this keeps it."""
 
@@ -173,6 +171,8 @@ class FreeSpace:
             raise TrajectoryError("every obstacle needs a finite centre and one growth")
         self.shapes = tuple(shape for shape, _ in obstacles)
         self._bodies = _Bodies.of(self.shapes)
+        f = formation
+        self._formation = np.array([f.radius, f.above, f.below, *f.core, f.rounding])
         self.lateral_reach = np.array([shape.horizontal_reach for shape, _ in obstacles]) + self.growth
         """Extent of each obstacle from its centre outwards (M,) (m)."""
         self.vertical_reach = self._bodies.half_height + self.growth
@@ -221,34 +221,8 @@ class FreeSpace:
 
     def keep_away(self, starts: Array, ends: Array, least: Array) -> Mask:
         """Return whether the clearance is ``least`` (M,) or more on the segments ``starts`` to ``ends`` (E, 3)."""
-        kept, half = np.ones(len(starts), dtype=bool), np.linalg.norm(ends - starts, axis=1)[:, None] / 2.0
-        if not (len(self.centres) and len(starts)):
-            return kept
-        middle = self.clearance((starts + ends) / 2.0) - least
-        # Nowhere does the distance change faster than the place.
-        rows, bodies = np.nonzero(middle <= 2.0 * half)
-        outer = self._clearance_of(bodies, np.stack([starts[rows], ends[rows]])).min(axis=0) - least[bodies]
-        middle = middle[rows, bodies]
-        kept[rows[np.minimum(middle, outer) < 0.0]] = False
-        unsure = (outer + middle < half[rows, 0]) & kept[rows]
-        rows, bodies = rows[unsure], bodies[unsure]
-        kept[rows[self._least_clearance(bodies, starts[rows], ends[rows]) < least[bodies]]] = False
-        return kept
-
-    def _clearance_of(self, bodies: Indices, places: Array) -> Array:
-        """Return the clearance at each of ``places`` (..., K, 3) to the one of the bodies (K,) (..., K) (m)."""
-        shapes = _Bodies(self._bodies.sizes[bodies])
-        return np.asarray(shapes.distance(places - self.centres[bodies], self.formation) - self.growth[bodies])
-
-    def _least_clearance(self, bodies: Indices, starts: Array, ends: Array) -> Array:
-        """Return the least clearance on each segment from ``starts`` to ``ends`` (K, 3) to one of the bodies (K,)."""
-        low, high, least = np.zeros(len(bodies)), np.ones(len(bodies)), np.full(len(bodies), math.inf)
-        for _ in range(_SEARCH_STEPS if len(bodies) else 0):
-            shares = np.stack([high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)])
-            left, right = self._clearance_of(bodies, starts + shares[..., None] * (ends - starts))
-            least = np.minimum(least, np.minimum(left, right))
-            low, high = np.where(left > right, shares[0], low), np.where(left > right, high, shares[1])
-        return least
+        places = np.ascontiguousarray(starts), np.ascontiguousarray(ends)
+        return keep_away(*places, least, self.centres, self.growth, self._bodies.sizes, self._formation)
 
 
 class _Bodies:

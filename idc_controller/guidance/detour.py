@@ -18,6 +18,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.free_space import FreeSpace
+from idc_controller.geometry.free_space_kernels import lattice_graph
 from idc_controller.guidance.settings import DetourSettings
 from idc_controller.guidance.straightening import free_segments_from, straightened
 from idc_controller.trajectory.trajectory import point
@@ -25,7 +26,6 @@ from idc_controller.trajectory.trajectory import point
 Box = tuple[Array, Array]
 """Two opposite corners, NED (m)."""
 
-_TIE = 1e-9  # m, so that no edge is without cost
 _LONGER = (2.0, 6.0, math.inf)  # m than the straight line: limit of a path's length in three searches
 
 _HALF = [(i, j, k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1) if (i, j, k) > (0, 0, 0)]
@@ -228,20 +228,11 @@ class _Grid:
         back[chosen] = np.arange(count)
         first, last = (back[ends][back[ends] >= 0] for ends in (starts, goals))
         out = np.linalg.norm(places[chosen[first]] - self._start, axis=1) + to_goal[first] - straight
-        # The edges of each node, the last of them to the goal, then those of the start.
-        steps = _DIRECTIONS @ self._strides
-        ends = np.column_stack([number[flat[:, None] + 2 * steps], np.full(count, count + 1)])
-        is_edge = np.zeros(ends.shape, dtype=bool)
-        is_edge[:, :-1] = (ends[:, :-1] >= 0) & self._free.ravel()[flat[:, None] + steps]
-        is_edge[last, -1] = True
-        costs = np.append(lengths, 0.0) + np.append(to_goal, (0.0, 0.0))[ends] - to_goal[:, None]
-        costs[:, -1] = 0.0
-        begins = np.concatenate([[0], np.cumsum(is_edge.sum(axis=1)), 2 * [is_edge.sum() + len(first)]])
+        is_last = np.zeros(count, dtype=bool)
+        is_last[last] = True
         graph = csr_array(
-            (
-                np.maximum(np.append(costs[is_edge], out), 0.0) + _TIE,
-                np.append(ends[is_edge], first).astype(np.int32),  # as earlier versions of SciPy search them
-                begins.astype(np.int32),
+            lattice_graph(
+                flat, number, self._free.ravel(), _DIRECTIONS @ self._strides, lengths, to_goal, first, out, is_last
             ),
             shape=(count + 2, count + 2),
         )

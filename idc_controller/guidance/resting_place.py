@@ -21,7 +21,8 @@ from idc_controller.guidance.resting_place_kernels import least_distances
 from idc_controller.guidance.settings import RestingPlaceSettings
 from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.settings import BrakingSettings
-from idc_controller.trajectory.stop_plan import Braking, control_points
+from idc_controller.trajectory.stop_plan import Braking
+from idc_controller.trajectory.stop_plan_kernels import control_points
 
 _AXIS = 9
 """Points on the formation's upright axis on its path."""

@@ -4,22 +4,10 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Array1, Array2, Array3
-from idc_controller.compiled import inlined, kernel
+from idc_controller.arrays import Array1, Array2, Array3
+from idc_controller.compiled import kernel
 from idc_controller.geometry.distance_kernels import distance_to
-
-
-@inlined
-def _point_on_quartic(control: Array, share: float, axis: int) -> float:
-    """Return a coordinate of the Bezier curve of ``control`` points (5, 3) at a ``share`` (0 .. 1) of its time."""
-    rest = 1.0 - share
-    return float(
-        rest**4 * control[0, axis]
-        + 4.0 * share * rest**3 * control[1, axis]
-        + 6.0 * share**2 * rest**2 * control[2, axis]
-        + 4.0 * share**3 * rest * control[3, axis]
-        + share**4 * control[4, axis]
-    )
+from idc_controller.trajectory.stop_plan_kernels import point_on_quartic
 
 
 @kernel
@@ -60,7 +48,7 @@ def least_distances(
         for k in range(moments):
             share = min(elapsed[k] / durations[c], 1.0)
             for i in range(3):
-                place[k, i] = _point_on_quartic(control[c], share, i)
+                place[k, i] = point_on_quartic(control[c], share, i)
         north, east = place[-1, 0], place[-1, 1]
         top = min(place[-1, 2] + axis[0], 0.0)
         below = math.ceil(-top / step)

@@ -62,6 +62,8 @@ class _AtRest:
 
     def predict(self, count: int, region: Region | None) -> list[PredictedObstacle]:
         """Return them at ``count`` moments, all or those that reach into a ``region``."""
+        if not self._obstacles:
+            return []
         if count not in self._predicted:
             places, growth = np.repeat(self.centres[:, None], count, axis=1), np.zeros(count)
             self._predicted[count] = [

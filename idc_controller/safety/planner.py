@@ -57,6 +57,8 @@ class Planner:
         self.barrier = ExponentialBarrier(formation, settings)
         self.constraints = planner_constraints(self.barrier, settings)
         self.cost = _condensed_cost(settings)
+        self._layout: tuple[int, _Layout] | None = None
+        """That of the last QP, with its number of obstacles."""
 
     def free(self, start: Array) -> Plan:
         """Return the plan back to the reference from a deviation ``start`` (5, 3) with no obstacle near."""
@@ -89,7 +91,7 @@ class Planner:
         chain = self.settings.chain
         snap = reference[4, 0] + start[4]
         step = PlanningStep(reference, chain.response[0] @ start, acceleration, separations, snap, crackle)
-        layout = _Layout.of(self.constraints, self.cost.H, len(separations))
+        layout = self._layout_of(len(separations))
         problem = self._problem(start, step, layout)
         try:
             x = self.solver.solve(problem).x
@@ -123,10 +125,16 @@ class Planner:
             bool(np.all(G @ z <= h + 1e-9)) for G, h in rows
         )
 
+    def _layout_of(self, obstacles: int) -> _Layout:
+        """Return the layout of a QP with that number of obstacles; it is kept until the number changes."""
+        if self._layout is None or self._layout[0] != obstacles:
+            self._layout = obstacles, _Layout.of(self.constraints, self.cost.H, obstacles)
+        return self._layout[1]
+
     def _problem(self, start: Array, step: PlanningStep, layout: _Layout) -> QuadraticProgram:
-        """Return the QP in (z, slacks), in the matrices of its ``layout``."""
+        """Return the QP in (z, slacks)."""
         n = 3 * self.settings.chain.knots
-        G, bounds, row = layout.G, [], 0
+        G, bounds, row = layout.G.copy(), [], 0
         for constraint in self.constraints:
             rows, h = constraint.rows(step)
             G[row : row + len(h), :n] = rows

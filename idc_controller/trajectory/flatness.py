@@ -21,14 +21,11 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.model.drag import Air
 from idc_controller.parameters import SystemParameters
-from idc_controller.trajectory.flatness_kernels import Team, flat_map
+from idc_controller.trajectory.flatness_kernels import Team, flat_map, stencil_grid
 
 # Spacing of the samples from which derivatives of the UAVs' forces are taken (s): the trajectory is smooth up to snap
 # only, and these derivatives go beyond it.
 STENCIL = 0.05
-_STENCIL_TIMES = np.arange(-2, 3) * STENCIL
-_SAME = 1e-9
-"""Times closer than this (s) are the same."""
 
 _STILL_AIR = Air(np.zeros(3), np.zeros(3), 0.0)
 
@@ -99,10 +96,7 @@ def flat_reference(
 ) -> FlatReference:
     """Exact reference at ``times`` (K,) (s): states and the set-points that hold the vehicles on it."""
     p, N = parameters, parameters.number_of_uavs
-    grid = (times[:, None] + _STENCIL_TIMES).ravel()
-    # A horizon whose stages are as far apart as the stencil's points needs most times five times over.
-    _, first, places = np.unique(np.rint(grid / _SAME), return_index=True, return_inverse=True)
-    grid, places = grid[first], places.reshape(-1, 5)
+    grid, places = stencil_grid(times, STENCIL)
     derivatives = np.ascontiguousarray(trajectory.derivatives(grid))
     constant = np.empty((N, 3))
     constant[:] = load.uav_force

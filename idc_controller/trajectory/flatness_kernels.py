@@ -4,9 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idc_controller.arrays import Array, Array2, Array3, Const1, Const2, Indices, Indices2
+from idc_controller.arrays import Array, Array1, Array2, Array3, Const1, Const2, Indices, Indices2
 from idc_controller.compiled import inlined, kernel
 from idc_controller.model.drag import SMOOTHING, Air
+
+_SAME = 1e-9
+"""Times closer than this (s) are the same."""
 
 
 class Team(NamedTuple):
@@ -19,6 +22,36 @@ class Team(NamedTuple):
     attitude_kp: float
     attitude_kd: float
     motor_time_constant: float
+
+
+@kernel
+def stencil_grid(times: Array1, spacing: float) -> tuple[Array1, Indices2]:
+    """Return the times at which a stencil of five about each of ``times`` (K,) (s) needs the trajectory.
+
+    A horizon whose stages are as far apart as the stencil's points needs most times five times over.
+
+    Args:
+        times: in any order (K,) (s).
+        spacing: of the stencil's points (s).
+
+    Returns:
+        The times without repetitions (G,) (s), and the index in them of each stencil's points (K, 5).
+    """
+    grid, ticks = np.empty(5 * len(times)), np.empty(5 * len(times))
+    index, count = np.empty((len(times), 5), dtype=np.int64), 0
+    for k, time in enumerate(times):
+        for o in range(5):
+            at = time + (o - 2) * spacing
+            tick = np.rint(at / _SAME)
+            place = count - 1
+            while place >= 0 and ticks[place] != tick:
+                place -= 1
+            if place < 0:
+                grid[count], ticks[count] = at, tick
+                place = count
+                count += 1
+            index[k, o] = place
+    return grid[:count].copy(), index
 
 
 @inlined
@@ -208,6 +241,20 @@ def flat_map(
     """
     links, tension, on_payload, thrust, on_uav = _forces(derivatives, mass, force, uav_force, has_air, air, team)
     x, u = _states(derivatives, links, thrust, index, h, team)
-    at = index[:, 2].copy()
-    on_uavs = uav_force + on_uav[at].reshape(-1, 1, 3)
-    return x, u, derivatives[:, at], links[:, at], tension[at], thrust[at], on_payload[at], on_uavs
+    K, N = len(index), len(team.m)
+    payload, directions, tensions = np.empty((5, K, 3)), np.empty((3, K, 3)), np.empty((K, N))
+    thrusts, on_payload_at, on_uavs = np.empty((K, N, 3)), np.empty((K, 3)), np.empty((K, N, 3))
+    for k in range(K):
+        j = index[k, 2]
+        for i in range(N):
+            tensions[k, i] = tension[j, i]
+        for c in range(3):
+            for order in range(5):
+                payload[order, k, c] = derivatives[order, j, c]
+            for order in range(3):
+                directions[order, k, c] = links[order, j, c]
+            on_payload_at[k, c] = on_payload[j, c]
+            for i in range(N):
+                thrusts[k, i, c] = thrust[j, i, c]
+                on_uavs[k, i, c] = uav_force[i, c] + on_uav[j, c]
+    return x, u, payload, directions, tensions, thrusts, on_payload_at, on_uavs

@@ -20,10 +20,9 @@ from idc_controller.model.linear import StateLayout
 from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.flatness import FlatReference
 from idc_controller.trajectory.settings import BrakingSettings
+from idc_controller.trajectory.stop_plan_kernels import control_points, motions_at_rest, on_quartic
 
 _layout = cache(StateLayout)
-_BINOMIALS, _POWERS = np.array([1.0, 4.0, 6.0, 4.0, 1.0]), np.arange(5)
-"""Of the Bernstein polynomials of a quartic."""
 
 
 class Braking(NamedTuple):
@@ -59,8 +58,7 @@ class StopPlan(NamedTuple):
         """
         points = (self.control_points - parameters.p[:, None]).mean(axis=0)
         points[:, 2] += parameters.l.mean()
-        share = np.clip(elapsed / self.duration, 0.0, 1.0)[:, None]
-        return np.asarray((_BINOMIALS * share**_POWERS * (1.0 - share) ** _POWERS[::-1]) @ points)
+        return on_quartic(points, np.clip(elapsed / self.duration, 0.0, 1.0))
 
 
 def stop_plan(
@@ -77,37 +75,12 @@ def stop_plan(
     """
     layout, links = _layout(parameters.number_of_uavs), flat.links
     error = np.zeros(layout.size) if x is None or not math.isfinite(x @ x) else x - flat.x[0]
-    number, p, l = parameters.number_of_uavs, parameters.p, parameters.l[:, None]
-    # All UAVs are beside the reference by what their centre is, the mean of r_0 - l_i s_i.
-    beside = np.array([error[layout.r_0], error[layout.v_0]])
-    tilts = np.array([error[layout.s], error[layout.s_dot]]).reshape(2, -1, 2)
-    beside[:, :2] -= (l * tilts).sum(axis=1) / number
+    motions = motions_at_rest(
+        flat.payload[:3, 0].copy(), error, np.array([links.q[0], links.q_dot[0], links.q_ddot[0]]),
+        parameters.p, parameters.l, layout.s.start, layout.s_dot.start,
+    )  # fmt: skip
     # The UAVs come to rest by their own motion, and the payload below them, which may swing now.
-    state = np.empty((number, 3, 3))
-    state[:] = flat.payload[:3, 0]
-    state[:, :2] += beside
-    state[:, 0] += p
-    state -= l[..., None] * np.array([links.q[0], links.q_dot[0], links.q_ddot[0]])
-    hung = state.copy()
-    hung[:, 0] -= p
-    hung[:, 0, 2] += parameters.l
-    below = (hung / number).sum(axis=0)
+    state, below = motions[:-1], motions[-1]
     braking = choose(time, below)
     duration = braking.duration(below[1])
     return StopPlan(time, duration, control_points(state, np.array([duration]), np.array([braking.aside])))
-
-
-def control_points(states: Array, durations: Array, asides: Array) -> Array:
-    """Return the control points (P, 5, 3) (m) of paths to rest: quartics as Bezier curves.
-
-    Args:
-        states: position, velocity and acceleration at the start of each path (P, 3, 3); or of all of them (1, 3, 3).
-        durations: of the paths (P,) (s); or of all of them (1,).
-        asides: place of rest less that to which the motion alone leads (P, 3) (m); (1, 3) with one duration.
-    """
-    position, times = states[:, 0], durations[:, None]
-    turn, bend = times * states[:, 1], times**2 * states[:, 2]
-    points = np.empty((len(turn), 5, 3))
-    points[:, 0], points[:, 1] = position, position + turn / 4.0
-    points[:, 2:] = (position + turn / 2.0 + (1.0 / 12.0) * bend + asides)[:, None]
-    return points

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
+from idc_controller.trajectory.trajectory_kernels import span
 
 
 class Times(NamedTuple):
@@ -65,7 +66,7 @@ class Trajectory(ABC):
             raise TrajectoryError(f"derivatives exist for order 0 to 4, not {order}")
         if not len(array):
             return np.zeros((order + 1, 0, 3))
-        return self.evaluate(Times(array, float(array.min()), float(array.max())).checked(), order)
+        return self.evaluate(Times(array, *span(array)).checked(), order)
 
     @abstractmethod
     def evaluate(self, times: Times, order: int) -> Array:

@@ -11,8 +11,9 @@ _SUPPORT = 6
 """Control points that act at one time: :data:`idc_controller.trajectory.spline.SUPPORT`."""
 
 
-@inlined
-def _span(times: Array) -> tuple[float, float]:
+@kernel
+def span(times: Array1) -> tuple[float, float]:
+    """Return the earliest and the latest of ``times`` (K,); NaN twice if one of them is not finite."""
     earliest, latest = math.inf, -math.inf
     for time in times:
         if not math.isfinite(time):
@@ -200,7 +201,7 @@ def progress(scalings: Array2, times: Array1) -> tuple[Indices1, Array1, float, 
                 break
         which[i] = piece
         result[i] = scalings[piece, 1] + scalings[piece, 2] * (time - scalings[piece, 0])
-    earliest, latest = _span(result)
+    earliest, latest = span(result)
     return which, result, earliest, latest
 
 

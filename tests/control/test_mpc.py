@@ -9,11 +9,7 @@ from mpc_oracle import optimal_moves
 from scipy.linalg import solve_discrete_are
 
 from gcs.config import read_system
-from idc_controller.control.force_components import (
-    inputs_in_force_components,
-    setpoints_from_force_components,
-    state_in_force_components,
-)
+from idc_controller.control.force_kernels import setpoints, tracking_error
 from idc_controller.control.mpc import ModelPredictiveController, input_weight, state_weight
 from idc_controller.control.settings import MpcSettings, MpcTuning
 from idc_controller.errors import SolverError
@@ -44,6 +40,13 @@ def error_of(**parts):
     for name, value in parts.items():
         error[getattr(LAYOUT, name)] = value
     return error
+
+
+def in_force_components(u):
+    """Tilts and thrusts (12,) as F_xy / f_hover and -F_z."""
+    n, f = u[LAYOUT.n_setpoint].reshape(-1, 2), u[LAYOUT.f_setpoint]
+    lateral = n * (f / MODEL.parameters.hover_thrust)[:, None]
+    return np.concatenate([lateral.ravel(), f * np.sqrt(1.0 - (n**2).sum(axis=1))])
 
 
 def free_move(error):
@@ -100,7 +103,7 @@ def test_hard_input_limits_are_kept_whatever_the_error():
     for _ in range(30):
         error = rng.standard_normal(LAYOUT.size) * rng.choice([0.1, 0.5])
         output = DEFAULT.track(error, STAGES)
-        u = inputs_in_force_components(STAGES.u[0], LAYOUT, p.hover_thrust) + output.delta_u
+        u = in_force_components(STAGES.u[0]) + output.delta_u
         assert np.all(np.abs(u[LAYOUT.n_setpoint]) <= np.tan(s.tuning.uav_tilt_limit) + 1e-5)
         assert np.all(u[LAYOUT.f_setpoint] <= 0.95 * p.thrust_max + 1e-4)
         assert np.all(u[LAYOUT.f_setpoint] >= s.thrust_min - 1e-4)
@@ -113,7 +116,7 @@ def test_hard_input_limits_are_kept_whatever_the_error():
 )
 def test_mpc_marks_step_and_cuts_move_to_both_input_limits_when_qp_has_no_solution(parts, monkeypatch):
     mpc = ModelPredictiveController(MODEL, DEFAULT.settings)
-    s, hover = mpc.settings, MODEL.parameters.hover_thrust
+    s = mpc.settings
 
     def fail(g, h):
         raise SolverError("no")
@@ -122,7 +125,7 @@ def test_mpc_marks_step_and_cuts_move_to_both_input_limits_when_qp_has_no_soluti
         patched.setattr(mpc.qp, "solve", fail)
         output = mpc.track(error_of(**parts), STAGES)
     assert output.infeasible
-    u = inputs_in_force_components(STAGES.u[0], LAYOUT, hover)
+    u = in_force_components(STAGES.u[0])
     tilt, thrust_max = np.full(8, np.tan(s.tuning.uav_tilt_limit)), s.thrust_share_max * MODEL.parameters.thrust_max
     lower, upper = np.append(-tilt, [s.thrust_min] * 4), np.append(tilt, [thrust_max] * 4)
     assert u + output.delta_u == pytest.approx(np.clip(u + free_move(error_of(**parts)), lower, upper), abs=1e-6)
@@ -183,10 +186,9 @@ def test_force_components_are_inverted_exactly():
     hover = MODEL.parameters.hover_thrust
     u = np.concatenate([0.2 * rng.standard_normal(8), hover + rng.standard_normal(4)])
     target = np.concatenate([0.2 * rng.standard_normal(8), hover + rng.standard_normal(4)])
-    delta = inputs_in_force_components(target, LAYOUT, hover) - inputs_in_force_components(u, LAYOUT, hover)
-    assert setpoints_from_force_components(delta, u, LAYOUT, hover, 0.05) == pytest.approx(target)
+    delta = in_force_components(target) - in_force_components(u)
+    assert setpoints(delta, u, hover, 0.05) == pytest.approx(target)
     x = np.zeros(LAYOUT.size)
     x[LAYOUT.n], x[LAYOUT.f] = u[:8], u[8:]
-    converted = state_in_force_components(x, LAYOUT, hover)
-    as_inputs = np.concatenate([converted[LAYOUT.n], converted[LAYOUT.f]])
-    assert as_inputs == pytest.approx(inputs_in_force_components(u, LAYOUT, hover))
+    error = tracking_error(x, np.zeros(LAYOUT.size), hover, LAYOUT.n.start, np.inf, np.inf)
+    assert np.concatenate([error[LAYOUT.n], error[LAYOUT.f]]) == pytest.approx(in_force_components(u))

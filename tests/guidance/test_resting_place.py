@@ -13,7 +13,8 @@ from idc_controller.geometry.shapes import Box, Capsule, Mesh, MeshHull, Pole, S
 from idc_controller.guidance.resting_place import RestingPlace, least_distance
 from idc_controller.guidance.resting_place_kernels import least_distances
 from idc_controller.guidance.settings import RestingPlaceSettings
-from idc_controller.trajectory.stop_plan import Braking, control_points
+from idc_controller.trajectory.stop_plan import Braking
+from idc_controller.trajectory.stop_plan_kernels import control_points
 
 PARAMETERS = read_system().parameters()
 #: Position, velocity, acceleration: 2 m/s north at 5 m.

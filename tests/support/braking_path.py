@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.interpolate import BPoly
 
-from idc_controller.trajectory.stop_plan import control_points
+from idc_controller.trajectory.stop_plan_kernels import control_points
 
 
 def path_of(braking, state):

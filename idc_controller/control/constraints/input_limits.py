@@ -3,7 +3,7 @@
 import numpy as np
 
 from idc_controller.arrays import Array, Indices
-from idc_controller.control.force_components import inputs_in_force_components
+from idc_controller.control.force_kernels import fill_input_bounds
 from idc_controller.control.settings import MpcSettings
 from idc_controller.model.linear import LinearModel
 
@@ -12,7 +12,7 @@ class InputLimits:
     """Rows G v <= h on a move v (3 N,) about the reference's set-points, in force components."""
 
     def __init__(self, model: LinearModel, settings: MpcSettings) -> None:
-        self._layout, self._hover = model.layout, model.parameters.hover_thrust
+        self._hover = model.parameters.hover_thrust
         N = model.layout.number_of_uavs
         tilt = np.full(2 * N, np.tan(settings.tuning.uav_tilt_limit))
         thrust_max = settings.thrust_share_max * model.parameters.thrust_max
@@ -26,5 +26,4 @@ class InputLimits:
 
         ``u`` (K, 3 N): the reference's set-points at all stages.
         """
-        inputs = inputs_in_force_components(u[stages], self._layout, self._hover)
-        h[: 2 * inputs.size] = np.stack([self._upper - inputs, inputs - self._lower], axis=1).ravel()
+        fill_input_bounds(h, u, stages, self._hover, self._lower, self._upper)

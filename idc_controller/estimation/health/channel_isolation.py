@@ -7,7 +7,6 @@ wide, and a sensor that has been wrong all along would pass it, and outweigh all
 from __future__ import annotations
 
 from collections.abc import Callable
-from copy import copy
 
 import numpy as np
 
@@ -30,7 +29,8 @@ class ChannelIsolation:
 
     def copy(self) -> ChannelIsolation:
         """Return one with the same counts, which counts on by itself."""
-        other = copy(self)
+        other = ChannelIsolation.__new__(ChannelIsolation)  # a tenth of the time of copy.copy
+        vars(other).update(vars(self))
         other._rejections, other._acceptances = self._rejections.copy(), self._acceptances.copy()
         return other
 

@@ -80,6 +80,12 @@ class NoiseAdaptation:
         self._since_change = 0
         self._payload_rejections = 0
 
+    def copy(self) -> NoiseAdaptation:
+        """Return one in the same state, which learns on by itself."""
+        other = NoiseAdaptation.__new__(NoiseAdaptation)  # a tenth of the time of copy.copy
+        vars(other).update(vars(self))
+        return other
+
     @property
     def process_scale(self) -> float:
         """Scale of the densities of the forces' process noise."""

@@ -1,7 +1,6 @@
 """Sensor health: which parts of a measurement the estimator may use."""
 
 import math
-from copy import copy
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -168,11 +167,11 @@ class SensorHealth:
 
     def snapshot(self) -> HealthSnapshot:
         """Return a copy of what is learnt from innovations."""
-        return HealthSnapshot(copy(self.adaptation), self.isolation.copy())
+        return HealthSnapshot(self.adaptation.copy(), self.isolation.copy())
 
     def restore(self, snapshot: HealthSnapshot) -> None:
         """Take the state of a snapshot."""
-        self.adaptation, self.isolation = copy(snapshot.adaptation), snapshot.isolation.copy()
+        self.adaptation, self.isolation = snapshot.adaptation.copy(), snapshot.isolation.copy()
 
     @property
     def uav_positions_isolated(self) -> bool:

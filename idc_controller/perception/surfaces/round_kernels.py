@@ -37,6 +37,35 @@ def _solved(A: Array, b: Array) -> Array:
 
 
 @inlined
+def _median(values: Array) -> float:
+    """Return the median of ``values`` (n,), as ``np.median``, which takes seconds to compile."""
+    ordered, half, low, high = values.copy(), len(values) // 2, 0, len(values) - 1
+    while low < high:  # quickselect
+        pivot, i, j = ordered[(low + high) // 2], low, high
+        while i <= j:
+            while ordered[i] < pivot:
+                i += 1
+            while pivot < ordered[j]:
+                j -= 1
+            if i <= j:
+                ordered[i], ordered[j] = ordered[j], ordered[i]
+                i, j = i + 1, j - 1
+        if half <= j:
+            high = j
+        elif half >= i:
+            low = i
+        else:
+            break
+    middle = ordered[half]
+    if len(values) % 2 == 0:
+        below = ordered[0]
+        for i in range(1, half):
+            below = max(below, ordered[i])
+        middle = (below + middle) / 2.0
+    return float(middle)
+
+
+@inlined
 def _residuals(
     points: Array, origins: Array, theta: Array, noise: float, own_variance: Array, scatter: float, H: Array
 ) -> tuple[Array, Array]:
@@ -175,7 +204,7 @@ def fitted_round(
                 residual[p] = min(-residual[p], points[p, 2] - highest)
     squared = residual**2
     score = np.minimum(squared / variance, SCORE_CAP).mean()
-    excess = np.median(squared) / MEDIAN_OF_SQUARE * n / max(n - free, 1) - np.median(variance)
+    excess = _median(squared) / MEDIAN_OF_SQUARE * n / max(n - free, 1) - _median(variance)
     place, spread = np.zeros(3), np.zeros(3)
     for i in range(axes):
         place[i], spread[i] = theta[i], variances[i]
