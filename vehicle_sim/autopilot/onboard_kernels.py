@@ -146,8 +146,8 @@ def take_fresh_samples(
 ) -> None:
     """Write which ``samples`` (N, 13) are ``fresh``: numbers, with a rotation for attitude, and no repeated ones.
 
-    Fresh ones repeat neither position, nor attitude, nor rates of the ``last``. They are the new ``estimates`` (N, 13), with
-    ``stamps`` (N, 2): the sample's of ``times`` (N,), and ``now`` (s). For the others :mod:`.navigation` decides:
+    Fresh ones repeat neither position, nor attitude, nor rates of the ``last``. They are the new ``estimates`` (N, 13),
+    with ``stamps`` (N, 2): the sample's of ``times`` (N,), and ``now`` (s). For the others :mod:`.navigation` decides:
     sensors repeat themselves by chance, or because they are stuck. Rates of zero are those of a vehicle at rest in a
     world without noise. All ``samples`` are then the ``last``.
     """
