@@ -110,7 +110,8 @@ def first_start(run_dir: Path, count: int | None = None) -> float | None:
         if count is not None:
             others = [f for f in faults if (kind := KINDS.get(f.get("kind"))) is None or kind.family != "world"]
             faults = others or faults
-        return float(record["take_off_s"] + min(fault["activations"][0][0] for fault in faults if fault["activations"]))
+        first = min(fault["activations"][0][0] for fault in faults if fault["activations"])
+        return float((record["take_off_s"] or 0.0) + first)
     except (UnusableInput, KeyError, TypeError, IndexError, ValueError):
         return None
 
