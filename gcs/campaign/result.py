@@ -91,6 +91,8 @@ class Result:
     stop_s: float | None = None
     team_stop_s: float | None = None
     team_spread_s: float | None = None
+    armed_at_end: str = ""
+    """Vehicles (system ids) that were armed at the end."""
     detected_s: float | None = None
     detected_as: str = ""
     false_alarms: int | None = None
