@@ -160,7 +160,13 @@ def test_unusable_pairs_are_refused_with_their_line(tmp_path, capsys, first, tex
 def test_vehicle_armed_at_the_end_and_false_completion_do_not_pass(tmp_path):
     landed = Result(outcome="aborted", contacts=0, landed=True, tilt_max_deg=3.0)
     assert meets(DISARMED, landed)
-    for change in ({"armed_at_end": "2"}, {"landed": False}, {"contacts": 1}, {"failures": "payload_tilt_deg"}):
+    for change in (
+        {"armed_at_end": "2"},
+        {"landed": False},
+        {"contacts": 1},
+        {"failures": "touchdown_speed"},
+        {"lean_max_deg": 21.0},
+    ):
         assert not meets(DISARMED, Result(**{**vars(landed), **change}))
     short = {**vars(landed), "failures": "arrival"}
     assert meets(DISARMED, Result(**short)) and not meets(DISARMED, Result(**{**short, "outcome": "completed"}))

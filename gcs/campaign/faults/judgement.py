@@ -21,15 +21,17 @@ from gcs.record.tables import ALARMS
 
 WITHIN_LIMITS, SAFE, DISARMED = REQUIREMENTS = ("within limits", "safe", "safe and disarmed")
 """Conditions of a pass: completed within its limits; set down safely in any phase, with its limits held; besides that
-every vehicle disarmed at the end, and completed only where it arrived.
+the payload upright all the time, every vehicle disarmed at the end, and completed only where it arrived.
 """
+LEAN_LIMIT_DEG = 20.0
+"""Largest roll or pitch of an upright payload in flight."""
 
 COLUMNS = (
     "number", "name", "fault", "kind", "level", "severity", "mission", "seed", "outcome", "passed", "within_limits",
-    "failures", "reason", "exit_code", "clearance_min_m", "tilt_max_deg", "uav_separation_min_m", "contacts", "landed",
-    "touchdown_mps", "end_tilt_deg", "armed_at_end", "position_rmse_m", "duration_s", "stop_s", "team_stop_s",
-    "team_spread_s", "detected_s", "detected_as", "false_alarms", "false_codes", "clean_s", "true_source", "isolation",
-    "named_source", "notes", "wall_s", "run_dir", "replay", "format",
+    "failures", "reason", "exit_code", "clearance_min_m", "tilt_max_deg", "lean_max_deg", "uav_separation_min_m",
+    "contacts", "landed", "touchdown_mps", "end_tilt_deg", "armed_at_end", "position_rmse_m", "duration_s", "stop_s",
+    "team_stop_s", "team_spread_s", "detected_s", "detected_as", "false_alarms", "false_codes", "clean_s",
+    "true_source", "isolation", "named_source", "notes", "wall_s", "run_dir", "replay", "format",
 )  # fmt: skip
 
 
@@ -103,7 +105,8 @@ def meets(requirement: str, result: Result) -> bool:
     if requirement == SAFE:
         return safe
     is_down = result.landed is not False and not result.armed_at_end
-    return safe and is_down and not (result.outcome == Outcome.COMPLETED and "arrival" in failures)
+    upright = result.lean_max_deg is None or result.lean_max_deg <= LEAN_LIMIT_DEG
+    return safe and is_down and upright and not (result.outcome == Outcome.COMPLETED and "arrival" in failures)
 
 
 def _armed_at_end(run_dir: Path) -> list[int]:

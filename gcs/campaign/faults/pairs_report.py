@@ -15,7 +15,7 @@ from gcs.campaign.tables import extreme, text_table, write_records, write_result
 
 _TITLES = {"first": "first fault", "second": "second fault", "phase": "phase", "delay": "delay", "wind": "wind"}
 _UNITS = {"delay": " s", "wind": " m/s"}
-_FIGURES = ("outcome", "passed", "failures", "reason", "tilt_max_deg", "uav_separation_min_m", "contacts",
+_FIGURES = ("outcome", "passed", "failures", "reason", "lean_max_deg", "uav_separation_min_m", "contacts",
             "touchdown_mps", "armed_at_end", "notes")  # fmt: skip
 
 
@@ -58,7 +58,7 @@ def _rows(paired: Sequence[tuple[Result, Mapping[str, Any]]]) -> list[dict[str, 
                     "factor": title, "value": shown, "flights": str(len(chosen)),
                     "passed": str(sum(result.passed for result in chosen)),
                     "completed": str(sum(result.outcome == "completed" for result in chosen)),
-                    "largest tilt": extreme(chosen, "tilt_max_deg", max, 1, "deg"),
+                    "largest roll, pitch": extreme(chosen, "lean_max_deg", max, 1, "deg"),
                     "least separation": extreme(chosen, "uav_separation_min_m", min, 2, "m"),
                     "touchdown": extreme(chosen, "touchdown_mps", max, 2, "m/s"),
                 }
