@@ -43,6 +43,21 @@ name = "b"
 kind = "latency"
 delay = 0.1
 """
+WIND_ONLY = """
+[campaign]
+name = "wind"
+missions = ["hop_north.toml"]
+seeds = [7]
+
+[pairs]
+wind = [4.0]
+phases = {{ climb = 3.0 }}
+
+[[fault]]
+{first}
+kind = "wind"
+velocity = [1.0, 0.0, 0.0]
+"""
 
 
 @pytest.fixture(scope="module")
@@ -143,6 +158,10 @@ def test_sample_has_all_pairs_that_are_allowed_and_no_row_that_is_not():
         ("one_vehicle = true\nvehicles = [2]", SMALL, "fault[1].one_vehicle: goes without vehicles"),
         ("", SMALL.replace("climb = 3.0", "landing = 3.0"), "pairs.phases"),
         ("", SMALL.replace("delays = [0.3, 1.0]", "delays = []"), "pairs.delays: needs at least 1"),
+        ('name = "b"', WIND_ONLY, "pairs: no combination can be flown"),
+        ("", SMALL.replace("[0.3, 1.0]", str([0.1 * i for i in range(20)])).replace(
+            "climb", ", ".join(f"{name} = 9.0" for name in ("arm", "fly", "land")) + ", climb"
+        ) + "".join(f'[[fault]]\nname = "{i}"\nkind = "partition"\n' for i in range(60)), "more than 200000"),
         ("start = 1.0\none_vehicle = true", SMALL.replace("[pairs]", "[limits]\n[other]"), "unknown key"),
         ("start = 1.0\none_vehicle = true",
          SMALL.replace("[pairs]\ndelays = [0.3, 1.0]\nphases = {{ climb = 3.0, disarm = 0.0 }}\n", "")

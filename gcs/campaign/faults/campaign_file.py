@@ -17,6 +17,7 @@ from gcs.campaign.scenarios.field import FIELD
 from gcs.config import UnusableFile
 from gcs.config.toml_file import ParsedFile, read_toml
 from gcs.config.validate import Key, NotNegative, strict
+from gcs.errors import UnusableInput
 from gcs.mission.faults import fault_problems, read_fault
 from gcs.mission.model import Limits, Name
 from gcs.mission.own import named
@@ -130,7 +131,10 @@ def read_campaign(path: Path) -> CampaignFile:
     if tables.pairs is not None:
         team = min(base.system.team.vehicles for base in missions.values())
         paired = [_paired_fault(tables, case) for case in cases]
-        cases = tuple(case for seed in _seeds(table) for case in pair_cases(tables.pairs, paired, seed, team))
+        try:
+            cases = tuple(case for seed in _seeds(table) for case in pair_cases(tables.pairs, paired, seed, team))
+        except UnusableInput as error:
+            raise UnusableFile([file.problem(("pairs",), str(error))]) from None
     if table.clean:
         cases = (Case(CLEAN, 1, "", ()), *cases)
     return CampaignFile(

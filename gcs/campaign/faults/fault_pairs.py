@@ -4,6 +4,7 @@ Every two values of two factors that can be flown together are in one flight of 
 second fault (or none), moment of the first (a phase; at its start or within it), delay of the second, and wind.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, product
@@ -14,9 +15,12 @@ from pydantic import Field
 
 from gcs.campaign.faults.cases import Case, SweptFault
 from gcs.config.validate import NotNegative, strict
+from gcs.errors import UnusableInput
 from gcs.mission.model import Fault, StartPhase
 
 _LEAST_OFFSET = 0.1  # s; of a moment within a phase
+MOST = 200_000
+"""Combinations of which a sample is drawn, at most."""
 _Values = Annotated[tuple[NotNegative, ...], Field(min_length=1, max_length=20)]
 
 
@@ -77,8 +81,8 @@ def covering_sample(
     """
     rows = [row for row in product(*(range(len(values)) for values in factors))
             if allowed(tuple(values[i] for values, i in zip(factors, row, strict=True)))]  # fmt: skip
-    order = generator.permutation(len(rows))
-    columns = np.array(rows)[order]
+    columns = np.array(rows, dtype=int).reshape(-1, len(factors))
+    columns = columns[generator.permutation(len(rows))]
     numbers, offset = [], 0
     for a, b in combinations(range(len(factors)), 2):
         numbers.append(offset + columns[:, a] * len(factors[b]) + columns[:, b])
@@ -95,17 +99,22 @@ def covering_sample(
 
 
 def combinations_of(table: PairsTable, faults: Sequence[PairedFault], seed: int) -> list[Combination]:
-    """Return the covering sample of a seed."""
+    """Return the covering sample of a seed. Raises :class:`UnusableInput` if that is nothing, or of too many."""
     moments = [(phase, within) for phase, length in table.phases.items()
                for within in ((False, True) if length > _LEAST_OFFSET else (False,))]  # fmt: skip
     factors = (faults, (None, *faults), moments, table.delays, table.wind)
+    if (number := math.prod(map(len, factors))) > MOST:
+        raise UnusableInput(f"{number} combinations are more than {MOST}: list fewer faults, phases, delays or winds")
 
     def allowed(row: tuple[Any, ...]) -> bool:
         combination = Combination(*row)
         alone = combination.second is None and combination.delay != table.delays[0]  # there is nothing to delay
         return combination.can_be_flown and not alone
 
-    return [Combination(*row) for row in covering_sample(factors, allowed, np.random.default_rng([seed, 0]))]
+    sample = covering_sample(factors, allowed, np.random.default_rng([seed, 0]))
+    if not sample:
+        raise UnusableInput("no combination can be flown: wind beside wind only")
+    return [Combination(*row) for row in sample]
 
 
 def pair_cases(table: PairsTable, faults: Sequence[PairedFault], seed: int, team: int) -> tuple[Case, ...]:
