@@ -99,7 +99,7 @@ def world(mission: Mission, run_dir: Path) -> InProcessWorld:
         # The kinds take long to import, spent only where there are faults.
         from vehicle_sim.faults.fault_injector import FaultInjector
 
-        injector = FaultInjector(mission.faults, mission.seed, mission.system)
+        injector = FaultInjector(mission.faults, mission.seed, mission.system, mission)
     try:
         swarm = Swarm(
             mission.system, seed=mission.seed, home=mission.home, obstacles=mission.obstacles, faults=injector

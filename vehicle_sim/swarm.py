@@ -13,6 +13,7 @@ from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.free.settings import free_settings
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.faults.disturbances import Disturbances
+from vehicle_sim.faults.phases import VehicleState
 from vehicle_sim.mavlink.vehicle import Vehicle
 from vehicle_sim.team import Team
 from vehicle_sim.world.free_world import FreeWorld
@@ -211,6 +212,8 @@ class Swarm:
             self._team.feel(self.world.specific_forces(), now)
         changed = self._team.step(states, now)
         self._wrenches = self._team.wrenches()
+        if self._faults.awaits_phase and isinstance(self.world, World):
+            self._faults.observe(now, [_state_of(vehicle) for vehicle in self.vehicles], self.world)
         if self._truth is None or (self._modes_recorded and not changed):
             return
         self._modes_recorded = True
@@ -218,6 +221,12 @@ class Swarm:
             autopilot = vehicle.autopilot
             mode = px4.mode_name(autopilot.mode)
             self._truth.write_mode(now, vehicle.system_id, mode, autopilot.armed, autopilot.failsafe)
+
+
+def _state_of(vehicle: Vehicle) -> VehicleState:
+    """Return what of a vehicle says in which phase the flight is."""
+    state = vehicle.autopilot.state
+    return VehicleState(state.armed, state.actuation.thrust > 0.0, state.hold is not None)
 
 
 def _clients(vehicle: int, ground: Address | None, sdk: Address | None) -> dict[Address, bool]:

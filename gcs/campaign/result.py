@@ -53,6 +53,9 @@ class Result:
     # From the summary of the flight.
     clearance_min_m: float | None = None
     tilt_max_deg: float | None = None
+    """Of roll, pitch and yaw."""
+    lean_max_deg: float | None = None
+    """Of roll and pitch."""
     uav_separation_min_m: float | None = None
     contacts: int | None = None
     duration_s: float | None = None
@@ -91,6 +94,8 @@ class Result:
     stop_s: float | None = None
     team_stop_s: float | None = None
     team_spread_s: float | None = None
+    armed_at_end: str = ""
+    """Vehicles (system ids) that were armed at the end."""
     detected_s: float | None = None
     detected_as: str = ""
     false_alarms: int | None = None
@@ -122,14 +127,15 @@ _OF_SUMMARY = ("cpu_s", "clearance_min_m", "uav_separation_min_m", "contacts", "
 def summary_columns(flown: Flown) -> dict[str, Any]:
     """Return the columns that follow from the summary of a flight, and how it ended."""
     summary = flown.summary
-    angles = [angle for angle in summary.get("payload_tilt_max_deg", {}).values() if angle is not None]
+    tilt = {axis: angle for axis, angle in summary.get("payload_tilt_max_deg", {}).items() if angle is not None}
     steps, landing = summary.get("step_time_ms", {}), summary.get("landing") or {}
     return {
         "reason": flown.reason,
         "exit_code": flown.exit_code,
         "wall_s": round(flown.wall, 1),
         **{column: summary.get(column) for column in _OF_SUMMARY},
-        "tilt_max_deg": max(angles, default=None),
+        "tilt_max_deg": max(tilt.values(), default=None),
+        "lean_max_deg": max((angle for axis, angle in tilt.items() if axis != "yaw"), default=None),
         "position_rmse_m": summary.get("position_rmse_m", {}).get("total"),
         "slack_max_m": (summary.get("safety") or {}).get("slack_max_m"),
         "step_time_p50_ms": steps.get("p50"),

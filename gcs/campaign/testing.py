@@ -18,24 +18,32 @@ AnyFault = Fault | Mapping[str, Any] | Any
 
 def fault(
     parameters: Any,
-    start: float = 0.0,
+    start: float | None = None,
     duration: float | None = None,
     *,
     every: float | None = None,
     times: int | None = None,
     vehicles: Sequence[int] | None = None,
     direction: Any = None,
+    start_phase: Any = None,
+    start_offset: float | None = None,
 ) -> Fault:
     """A fault with ``parameters`` of a kind, such as ``gcs.faults.link.PacketLoss(probability=0.3)``.
 
-    The rest is as in a mission file (s). Raises :class:`TypeError` for what are not the parameters of a kind.
+    The rest is as in a mission file (s); with neither a start nor a phase it starts at take-off.
+
+    Raises :class:`TypeError` for what are not the parameters of a kind.
     """
     names = [kind.name for kind in KINDS.values() if type(parameters) is kind.settings]
     if not names:
         raise TypeError(f"{parameters!r} are not the parameters of a kind of fault")
     named = None if vehicles is None else tuple(vehicles)
     settings = dataclasses.asdict(parameters)
-    return Fault(names[0], start, duration, every, times, named, direction, settings)
+    start = 0.0 if start is None and start_phase is None else start
+    return Fault(
+        names[0], start, duration, every, times, named, direction, settings, start_phase=start_phase,
+        start_offset=start_offset,
+    )  # fmt: skip
 
 
 class FaultFlights:

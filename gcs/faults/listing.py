@@ -55,7 +55,8 @@ def kinds_list() -> RenderableType:
             items += [Text(), Text(kind.name, style="bold cyan"), Padding(Text(summary(kind)), (0, 0, 0, 2))]
             items += [_indented(own, width)] if (own := own_parameters(kind)) else []
     notes = Text(
-        "Every fault has kind and start (s after take-off begins: when the first vehicle lifts off); it may have "
+        "Every fault has kind, and start (s after take-off begins: when the first vehicle lifts off) or start_phase "
+        "(arm, spool_up, climb, ...) with start_offset (s after that phase begins); it may have "
         "duration (s), every (s, from start to start) and times; vehicles where it is of vehicles; direction "
         "(telemetry, command, both) where one is named."
     )

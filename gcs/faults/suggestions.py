@@ -11,13 +11,19 @@ from gcs.faults.kinds import KINDS
 _WORD_ALIKE = 0.65
 _ALIKE = 0.85
 """Least ratio of letters in common: two of three in each word, or all but a few of the whole."""
-_COMMON = ("start", "duration", "every", "times", "vehicles", "direction")
+_COMMON = ("start", "start_phase", "start_offset", "duration", "every", "times", "vehicles", "direction")
 """Keys of a fault of any kind."""
 _COMMON_ALIASES = {
     "time": "start", "begin": "start", "at": "start", "delay": "start", "length": "duration", "period": "every",
     "end": "duration", "stop": "duration", "repeat": "times", "count": "times", "vehicle": "vehicles",
     "uav": "vehicles", "uavs": "vehicles", "drone": "vehicles", "drones": "vehicles", "target": "vehicles",
-    "link": "direction",
+    "link": "direction", "phase": "start_phase", "in_phase": "start_phase", "offset": "start_offset",
+}  # fmt: skip
+_PHASES = {
+    "arming": "arm", "armed": "arm", "take_off": "spool_up", "takeoff": "spool_up", "spoolup": "spool_up",
+    "ascent": "climb", "cruise": "fly", "mission": "fly", "hover": "hold", "loiter": "hold", "landing": "land",
+    "descent": "land", "descend": "land", "touchdown": "spool_down", "touch_down": "spool_down",
+    "disarming": "disarm", "failsafe": "autonomous_landing",
 }  # fmt: skip
 _DIRECTIONS = {
     "up": "command", "uplink": "command", "commands": "command", "setpoints": "command", "down": "telemetry",
@@ -45,6 +51,8 @@ def value_meant(kind: str, key: str, value: object) -> str | None:
         return None
     if key == "direction":
         return _meant(value, {**_DIRECTIONS, **_selves(set(_DIRECTIONS.values()))})
+    if key == "start_phase":
+        return _meant(value, {**_PHASES, **_selves(set(_PHASES.values()))})
     entry = _entries(kind).get(key, {})
     allowed = entry.get("enum") or entry.get("items", {}).get("enum") or ()
     return _meant(value, {**entry.get("values", {}), **_selves(allowed)})

@@ -82,11 +82,18 @@ def _surroundings(mission: Mission) -> Iterable[str]:
         yield _fault(fault)
 
 
+def _start(fault: Fault) -> str:
+    if fault.start_phase is None:
+        return f"{fault.start:g} s"
+    after = f"{fault.start_offset:g} s after " if fault.start_offset else ""
+    return f"{after}the start of {fault.start_phase.replace('_', ' ')}"
+
+
 def _fault(fault: Fault) -> str:
     from gcs.faults import KINDS  # takes long to import, spent only where there are faults
 
     kind = KINDS[fault.kind]
-    text = f"fault {fault.kind} from {fault.start:g} s "
+    text = f"fault {fault.kind} from {_start(fault)} "
     text += f"for {fault.duration:g} s" if fault.duration else "to the end"
     if fault.every is not None:
         text += f", every {fault.every:g} s" + (f" {fault.times} times" if fault.times else "")

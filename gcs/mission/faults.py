@@ -9,7 +9,7 @@ from gcs.config.validate import Key, Suggestions
 from gcs.errors import UnusableInput
 from gcs.mission.model import Fault, Mission
 
-_KEYS = ("kind", "start", "duration", "every", "times", "vehicles", "direction")
+_KEYS = ("kind", "start", "start_phase", "start_offset", "duration", "every", "times", "vehicles", "direction")
 """Keys of every fault; all others are parameters of its kind."""
 
 
@@ -51,7 +51,9 @@ def read_fault(file: ParsedFile, index: int, table: Mapping[str, Any]) -> Fault:
 
 
 def parameter_problems(file: ParsedFile, index: int, fault: Fault) -> list[str]:
-    """Return every reason against the kind of the file's fault ``index`` and its parameters."""
+    """Return every reason against the start of the file's fault ``index``, its kind and its parameters."""
+    if (wrong := _start_problem(fault)) is not None:
+        return [file.problem(("fault", index, wrong[0]), wrong[1])]
     from gcs.faults import KINDS  # the kinds take long to import, spent only where there are faults
 
     if fault.kind not in KINDS:
@@ -67,6 +69,17 @@ def parameter_problems(file: ParsedFile, index: int, fault: Fault) -> list[str]:
     except UnusableFile as error:
         return list(error.reasons)
     return []
+
+
+def _start_problem(fault: Fault) -> tuple[str, str] | None:
+    """Return the key and the reason of what is wrong with the start of a fault; None: nothing."""
+    if fault.start is None and fault.start_phase is None:
+        return "start", "missing key (or start_phase)"
+    if fault.start is not None and fault.start_phase is not None:
+        return "start_phase", "goes without start: start_offset is the time after the phase begins"
+    if fault.start_offset is not None and fault.start_phase is None:
+        return "start_offset", "goes with start_phase"
+    return None
 
 
 def fault_problems(fault: Fault, system: SystemConfig) -> Iterator[tuple[str, str]]:

@@ -26,6 +26,11 @@ class Home:
     altitude: float
 
 
+StartPhase = Literal[
+    "arm", "spool_up", "climb", "fly", "hold", "land", "autonomous_landing", "spool_down", "disarm"
+]  # fmt: skip
+"""Phases of a flight that the simulator knows, by the names of :class:`gcs.flight.phase.Phase`."""
+
 DEFAULT_HOME = Home(47.397742, 8.545594, 488.0)
 """The home of PX4's simulations."""
 
@@ -62,7 +67,10 @@ class Obstacle:
 @strict
 @dataclass(frozen=True)
 class Fault:
-    """Something that goes wrong. Times in s after take-off begins, which is when the first vehicle lifts off.
+    """Something that goes wrong.
+
+    It starts ``start`` s after take-off begins, which is when the first vehicle lifts off, or ``start_offset`` s (None:
+    at once) after the flight enters ``start_phase`` for the first time; times are in s.
 
     ``vehicles`` None: all of them. ``duration`` None: to the end. ``every``: it comes again at this period, ``times``
     times in all (None: without end). ``direction`` None: the kind's own. ``settings`` are the kind's parameters as
@@ -70,7 +78,7 @@ class Fault:
     """
 
     kind: Name
-    start: NotNegative
+    start: NotNegative | None = None
     duration: Positive | None = None
     every: Positive | None = None
     times: Annotated[int, Field(ge=1, le=1_000_000)] | None = None
@@ -78,6 +86,8 @@ class Fault:
     direction: Literal["telemetry", "command", "both"] | None = None
     settings: Mapping[str, Any] = field(default_factory=dict)
     line: int = 1
+    start_phase: StartPhase | None = None
+    start_offset: NotNegative | None = None
 
 
 @strict

@@ -24,7 +24,13 @@ def notes_of(record: Mapping[str, Any]) -> list[str]:
     take_off = record["take_off_s"]
     for fault in record["faults"]:
         who = f"fault {fault['number']}, {fault['kind']} (line {fault['line']} of the mission)"
-        if take_off is None:
+        phase = fault.get("start_phase")
+        if phase is not None and not fault["occurrences"]:
+            entered = (record.get("phases_s") or {}).get(phase)
+            when = "was not entered" if entered is None else f"began at {entered:.1f} s"
+            start = f"it was to start {fault['start']:g} s into {phase}, which {when}"
+            notes.append(f"{who}, never came: {start}, and the end was at {record['end_s']:.1f} s")
+        elif take_off is None and phase is None:
             notes.append(f"{who}, never came: nothing took off")
         elif not fault["occurrences"]:
             flown = record["end_s"] - take_off

@@ -18,3 +18,12 @@ def stops_after(run_dir: Path | str, since: float) -> dict[int, float]:
         if row["time_s"] >= since and row["mode"] != OFFBOARD:
             stops.setdefault(int(row["vehicle"]), float(row["time_s"]))
     return stops
+
+
+def armed_at_end(run_dir: Path | str) -> list[int]:
+    """Return the system ids of the vehicles that were armed at the end, in rising order; none without the file.
+
+    Raises :class:`gcs.errors.UnusableInput` for a damaged one.
+    """
+    armed = {int(row["vehicle"]): bool(row["armed"]) for row in read_table(Path(run_dir) / MODES)}
+    return sorted(vehicle for vehicle, is_armed in armed.items() if is_armed)

@@ -57,8 +57,8 @@ def modes(run: RunData) -> Iterable[Event]:
 def faults(run: RunData) -> Iterable[Event]:
     """Yield the occurrences of each fault, in the time of the tables."""
     record = read_json(run.folder / FAULTS_FILE)
-    take_off, given = record.get("take_off_s"), (run.manifest.get("mission") or {}).get("faults") or []
-    for fault in record.get("faults", ()) if take_off is not None else ():
+    take_off, given = record.get("take_off_s") or 0.0, (run.manifest.get("mission") or {}).get("faults") or []
+    for fault in record.get("faults", ()):
         settings = (given[fault["number"] - 1] if fault["number"] <= len(given) else {}).get("settings") or {}
         detail = ", ".join(f"{name} {_word(value)}" for name, value in settings.items())
         vehicles = fault.get("vehicles")

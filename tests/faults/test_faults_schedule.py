@@ -74,7 +74,7 @@ def test_combined_faults_stay_within_32_bit_floats():
 def test_active_time_and_occurrences_are_those_of_the_active_moments(duration, every, times):
     schedule, step = Schedule(1.5, duration, every, times), 0.01
     assert schedule.active_time(9.0) == 0.0 and schedule.at(9.0) is None and schedule.occurrences(9.0, 5) == (0, [])
-    schedule.take_off = 4.0
+    schedule.origin = 4.0
     active, seen = 0, set()
     for k in range(1200):
         now = step * (k + 0.5)

@@ -31,7 +31,7 @@ def lifted(*faults, seed=1, until=4.0, folder=None):
             swarm.record(TruthLog(folder, 4))
         exchange(swarm, ground, until)
         if faults:
-            assert all(f.schedule.take_off == swarm.take_off_time for f in injector.faults)
+            assert all(f.schedule.origin == swarm.take_off_time for f in injector.faults)
     return ground, injector, swarm
 
 
@@ -124,7 +124,7 @@ def test_latency_fault_is_the_latency_the_ground_measures():
 
 def active(entry, seed=1):
     made = ActiveFault.of(1, entry, seed, 4)
-    made.schedule.take_off = 0.0
+    made.schedule.origin = 0.0
     return made
 
 

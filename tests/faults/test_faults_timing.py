@@ -8,6 +8,7 @@ import pytest
 from fault_injection import TAKE_OFF, at, codec_frames, fault, injected, position, sent
 
 from gcs.mavlink.codec import Codec
+from gcs.mavlink.stop_plan import PAYLOAD_TYPE, StopPlanContent, stop_plan_message
 from vehicle_sim.world.range_sensor import RangeSample
 
 
@@ -27,6 +28,24 @@ def test_half_rate_is_an_even_share_of_measurements_and_all_of_the_rest(share, k
     assert len([m for m in messages if m.get_type() == "OBSTACLE_DISTANCE_3D"]) == 3 * kept
     assert len([m for m in messages if m.get_type() == "HEARTBEAT"]) == 100
     assert decoder.bad_frames == 0
+
+
+def test_half_rate_is_an_even_share_of_stop_plans_and_all_of_other_tunnels():
+    points = [(0.0, 0.0, -1.0)] * 5
+
+    def message(i):
+        plan = stop_plan_message(1, StopPlanContent(7, i, 0.02 * i, 5.0, 4.0, 0.1, points))
+        other = mavlink.MAVLink_tunnel_message(1, 1, 40000, 20, [i + 1] * 128)
+        return Codec(255, 190).frame(plan) + codec_frames(other)
+
+    decoder = Codec(1, 1)
+    arrived = sent(
+        injected(fault("low_rate", share=0.5, direction="command")), 100, message=message, direction="command"
+    )
+    messages = [received.message for *_, data in arrived for received in decoder.decode(data)]
+    numbers = [bytes(m.payload)[4] for m in messages if m.payload_type == PAYLOAD_TYPE]
+    assert len(numbers) == 50 and set(np.diff(numbers)) == {2}
+    assert len([m for m in messages if m.payload_type == 40000]) == 100
 
 
 def test_ground_hang_passes_heartbeats_only():

@@ -117,7 +117,7 @@ def test_biased_position_raises_an_alarm_of_its_vehicle_at_once(tmp_path):
     injector = FaultInjector(mission.faults, 52, mission.system)
     with InProcessFlight(mission, tmp_path / "run", seed=52, faults=injector) as flight:
         flight.fly()
-    begin = injector.faults[0].schedule.take_off + fault.start
+    begin = injector.take_off + fault.start
     rows = read_table(tmp_path / "run" / "alarms.csv")
     assert (rows["source"][0], rows["code"][0]) == ("vehicle 3", "measurements_rejected")
     assert 0.0 < rows["time_s"][0] - begin < 0.5
@@ -136,7 +136,7 @@ def test_flapping_link_raises_telemetry_timeout_at_any_phase(tmp_path, start):
     with InProcessFlight(mission, tmp_path / "run", seed=53, faults=injector) as flight:
         raised = flight.flight.failsafes.alarms.alarms
         flight.fly(stop=lambda: any(alarm.code is MonitorAlarm.TELEMETRY_TIMEOUT for alarm in raised))
-    begin = injector.faults[0].schedule.take_off + start
+    begin = injector.take_off + start
     rows = read_table(tmp_path / "run" / "alarms.csv")
     found = rows["time_s"][rows["code"] == "telemetry_timeout"]
     assert len(found) and 0.0 < found[0] - begin < 0.4

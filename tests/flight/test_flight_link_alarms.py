@@ -22,7 +22,7 @@ def hop(folder, *faults):
     injector = FaultInjector(faults, mission.seed, mission.system)
     with InProcessFlight(mission, folder / "run", faults=injector) as flight:
         flight.fly()
-        took_off = injector.faults[0].schedule.take_off
+        took_off = injector.take_off
         found = {}
         for alarm in flight.flight.failsafes.alarms.alarms:
             found.setdefault(alarm.code, {}).setdefault(alarm.source, alarm.time - took_off)

@@ -77,7 +77,8 @@ ALLOWED = {
         "vehicle_sim.swarm vehicle_sim.world"
     ),
     "vehicle_sim.autopilot": "gcs.config gcs.mavlink idc_controller.trajectory vehicle_sim.world",
-    "vehicle_sim.faults": "gcs.config gcs.faults gcs.mavlink gcs.mission gcs.record vehicle_sim.world",
+    # gcs.flight: the mission's trajectory alone, which says when its phases begin.
+    "vehicle_sim.faults": "gcs.config gcs.faults gcs.flight gcs.mavlink gcs.mission gcs.record vehicle_sim.world",
     "vehicle_sim.in_process": (
         "gcs.drivers gcs.faults gcs.mavlink gcs.mission gcs.record vehicle_sim.faults vehicle_sim.swarm "
         "vehicle_sim.world"

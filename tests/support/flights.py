@@ -96,7 +96,7 @@ class InProcessFlight(FlightInProcess):
         folder.mkdir(parents=True, exist_ok=True)
         config = world or mission.system
         if faults is None and mission.faults:
-            faults = FaultInjector(mission.faults, mission.seed, config)
+            faults = FaultInjector(mission.faults, mission.seed, config, mission)
         self.swarm = Swarm(config, seed=mission.seed, home=mission.home, faults=faults, obstacles=obstacles)
         world = InProcessWorld(self.swarm, folder)
         super().__init__(mission, folder, controller=controller, world=world, addresses=addresses)

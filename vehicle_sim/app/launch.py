@@ -72,7 +72,7 @@ def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack
         # The kinds take long to import, spent only where there are faults.
         from vehicle_sim.faults.fault_injector import FaultInjector
 
-        injector = FaultInjector(mission.faults, seed, config)
+        injector = FaultInjector(mission.faults, seed, config, mission)
     with messages_of_engine_aside() if options.gui else contextlib.nullcontext():
         swarm = started.enter_context(
             Swarm(
@@ -133,8 +133,11 @@ def _read(options: Namespace) -> tuple[Mission | None, SystemConfig]:
 
 
 def _refuse_faults_of_payload(mission: Mission) -> None:
-    """Raise :class:`UnusableInput` for a fault of a payload that is not there."""
+    """Raise :class:`UnusableInput` for a fault of a payload that is not there, or in a phase of its flight."""
     for fault in mission.faults:
+        if fault.start_phase is not None:
+            reason = "start_phase: with --free every vehicle flies by itself: start is the time after take-off"
+            raise UnusableInput(f"{mission.path}: line {fault.line}: fault {fault.kind}: {reason}")
         if fault.kind.startswith("payload_") or str(fault.settings.get("channel", "")).startswith("payload_"):
             raise UnusableInput(
                 f"{mission.path}: line {fault.line}: fault {fault.kind}: with --free there is no payload"

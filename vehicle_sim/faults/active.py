@@ -20,23 +20,23 @@ class Moment(NamedTuple):
 
 
 class Schedule:
-    """Start (s after take-off), duration (s; None: no end), period (s; None: once) and how often (None: no end)."""
+    """Start (s after its origin), duration (s; None: no end), period (s; None: once) and how often (None: no end)."""
 
     def __init__(
         self, start: float, duration: float | None = None, every: float | None = None, times: int | None = None
     ) -> None:
-        self._start = start
+        self.start = start
         self._duration = math.inf if duration is None else duration
         self._every = every
         self._last = 0 if every is None else math.inf if times is None else times - 1
-        self.take_off: float | None = None
-        """Time at which the first vehicle lifted off (s); None: not yet, and no fault is active."""
+        self.origin: float | None = None
+        """Time from which the start counts (s): take-off, or the entry into a phase; None: not yet."""
 
     def at(self, now: float) -> Moment | None:
         """Return where ``now`` (s) is in the fault; None: the fault is not active."""
-        if self.take_off is None:
+        if self.origin is None:
             return None
-        elapsed = now - self.take_off - self._start + TOLERANCE
+        elapsed = now - self.origin - self.start + TOLERANCE
         if elapsed < 0.0:
             return None
         occurrence = 0
@@ -54,9 +54,9 @@ class Schedule:
 
     def active_time(self, now: float) -> float:
         """Return for how long in all the fault has been active until ``now`` (s)."""
-        if self.take_off is None:
+        if self.origin is None:
             return 0.0
-        elapsed = now - self.take_off - self._start
+        elapsed = now - self.origin - self.start
         if elapsed <= 0.0:
             return 0.0
         if self._every is None:
@@ -67,15 +67,15 @@ class Schedule:
     def occurrences(self, now: float, limit: int) -> tuple[int, list[tuple[float, float | None]]]:
         """Return the number of occurrences until ``now``, and begin and end of the first ``limit``.
 
-        In s after take-off; an end is None while the occurrence is not over.
+        In s after the origin; an end is None while the occurrence is not over.
         """
-        if self.take_off is None or now - self.take_off + TOLERANCE < self._start:
+        if self.origin is None or now - self.origin + TOLERANCE < self.start:
             return 0, []
-        flown = now - self.take_off + TOLERANCE
+        flown = now - self.origin + TOLERANCE
         count = 1
         if self._every is not None:
-            count = int(min((flown - self._start) // self._every, self._last)) + 1
-        begins = [self._start + k * (self._every or 0.0) for k in range(min(count, limit))]
+            count = int(min((flown - self.start) // self._every, self._last)) + 1
+        begins = [self.start + k * (self._every or 0.0) for k in range(min(count, limit))]
         return count, [(b, b + self._duration if b + self._duration <= flown else None) for b in begins]
 
 
@@ -102,7 +102,8 @@ class ActiveFault:
         """Return a mission's fault, ready to fly. Raises :class:`gcs.errors.UnusableInput`."""
         settings = read_settings(fault.kind, fault.settings)
         vehicles = tuple(range(1, team + 1)) if fault.vehicles is None else fault.vehicles
-        schedule = Schedule(fault.start, fault.duration, fault.every, fault.times)
+        start = (fault.start_offset if fault.start is None else fault.start) or 0.0
+        schedule = Schedule(start, fault.duration, fault.every, fault.times)
         return cls(number, fault, KINDS[fault.kind], settings, schedule, seed, vehicles)
 
     @property

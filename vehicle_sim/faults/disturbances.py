@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from functools import reduce
 from typing import TYPE_CHECKING, TypeVar
 
+from vehicle_sim.faults.phases import PhaseObserver, VehicleState
 from vehicle_sim.world.free_world import FreeWorld
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
@@ -32,15 +33,35 @@ class Disturbances:
         self.faults: tuple[ActiveFault, ...] = ()
         self.of_world: WorldFaults | None = None
         """Those that act on the world."""
+        self.take_off: float | None = None
+        """Time at which the first vehicle lifted off (s); None: not yet."""
+        self.phases: PhaseObserver | None = None
+        """Observer of the phases in which faults start; None: all of them start after take-off."""
         self._arriving: dict[int, list[LinkImpairment]] = {}
         self._leaving: dict[int, list[LinkImpairment]] = {}
         self._samples: dict[tuple[str, int], list[SampleImpairment]] = {}
         self._clock_errors: dict[int, list[Callable[[float], float]]] = {}
 
     def took_off(self, time: float) -> None:
-        """Start the schedules of all faults: the first vehicle has lifted off."""
+        """Start the schedules of the faults that start after take-off: the first vehicle has lifted off."""
+        self.take_off = time
         for fault in self.faults:
-            fault.schedule.take_off = time
+            if fault.fault.start_phase is None:
+                fault.schedule.origin = time
+
+    @property
+    def awaits_phase(self) -> bool:
+        """Return True if a fault starts in a phase that the flight has not entered."""
+        return self.phases is not None and bool(self.phases.pending)
+
+    def observe(self, now: float, vehicles: Sequence[VehicleState], world: World) -> None:
+        """Start the schedules of the faults whose phase the flight enters ``now`` (s)."""
+        if self.phases is None:
+            return
+        entered = self.phases.observe(now, vehicles, world.states()[0, :3], standing=world.touching_ground())
+        for fault in self.faults:
+            if fault.fault.start_phase in entered:
+                fault.schedule.origin = now
 
     def disturb(self, world: World | FreeWorld, now: float) -> Forces | None:
         """Set the load, and return the forces of the wind on payload and UAVs; None: no force."""

@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from gcs.config import SystemConfig
-from gcs.mission.model import Fault
+from gcs.errors import UnusableInput
+from gcs.mission.model import Fault, Mission
 from gcs.record.faults import FAULTS_FILE
 from gcs.record.incomplete import IncompleteRecords
 from gcs.record.run_folder import UnwritableFile, write_json
@@ -14,13 +15,14 @@ from vehicle_sim.faults import link, sensors, timing, values  # noqa: F401 -- ea
 from vehicle_sim.faults.active import ActiveFault
 from vehicle_sim.faults.disturbances import Disturbances
 from vehicle_sim.faults.impairment import Impairment, LinkImpairment, SampleImpairment
+from vehicle_sim.faults.phases import PhaseObserver
 from vehicle_sim.faults.world import WorldFaults
 
 _TO_VEHICLE, _FROM_VEHICLE = 1, 2
 
 
 class FaultInjector(Disturbances):
-    """Faults of one flight, each active from its start (s after the first vehicle lifts off) on.
+    """Faults of one flight, each active from its start (s after the first vehicle lifts off, or after a phase) on.
 
     They act between the vehicles and their sensors, between the vehicles and the wire, and on the world.
 
@@ -28,9 +30,22 @@ class FaultInjector(Disturbances):
     direction are its own, so that one fault more or less does not change what the others do.
     """
 
-    def __init__(self, faults: Sequence[Fault] = (), seed: int = 1, system: SystemConfig = SystemConfig()) -> None:
-        """Raises :class:`gcs.errors.UnusableInput` for a fault that no mission could name."""
+    def __init__(
+        self,
+        faults: Sequence[Fault] = (),
+        seed: int = 1,
+        system: SystemConfig = SystemConfig(),
+        mission: Mission | None = None,
+    ) -> None:
+        """``mission``: that which is flown, needed by faults that start in a phase of it.
+
+        Raises :class:`gcs.errors.UnusableInput` for a fault that no mission could name.
+        """
         super().__init__()
+        if phases := {fault.start_phase for fault in faults if fault.start_phase is not None}:
+            if mission is None:
+                raise UnusableInput("faults that start in a phase need the mission that is flown")
+            self.phases = PhaseObserver(mission, phases)
         team = system.team.vehicles
         self.faults = tuple(ActiveFault.of(i, fault, seed, team) for i, fault in enumerate(faults, start=1))
         for fault in self.faults:
@@ -71,23 +86,33 @@ def record_faults(folder: Path, injector: FaultInjector, end: float, incomplete:
 
 def faults_record(injector: FaultInjector, end: float) -> dict[str, Any]:
     """Return the content of the file."""
-    take_off = injector.faults[0].schedule.take_off if injector.faults else None
+    take_off = injector.take_off
     return {
         "take_off_s": take_off,
         "end_s": end,
+        "phases_s": injector.phases.entered if injector.phases is not None else {},
         "faults": [
             {
                 "number": fault.number,
                 "kind": fault.fault.kind,
                 "line": fault.fault.line,
-                "start": fault.fault.start,
+                "start": fault.schedule.start,
+                "start_phase": fault.fault.start_phase,
                 "vehicles": list(fault.vehicles) if fault.kind.of_vehicles else None,
                 "direction": fault.direction,
                 "occurrences": (happened := fault.schedule.occurrences(end, _LISTED))[0],
-                "activations": happened[1],
+                "activations": [_since(take_off or 0.0, fault, *times) for times in happened[1]],
                 "seen": fault.seen,
                 "disturbed": fault.disturbed,
             }
             for fault in injector.faults
         ],
     }
+
+
+def _since(take_off: float, fault: ActiveFault, begin: float, end: float | None) -> tuple[float, float | None]:
+    """Return begin and end of an activation (s after the fault's origin) in s after ``take_off`` (s)."""
+    if fault.fault.start_phase is None or fault.schedule.origin is None:
+        return begin, end
+    earlier = fault.schedule.origin - take_off
+    return begin + earlier, None if end is None else end + earlier

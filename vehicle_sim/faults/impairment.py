@@ -6,12 +6,18 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
+import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.config import SystemConfig
 from gcs.faults import Direction
 from gcs.mavlink.address import Address
 from gcs.mavlink.frames import V2, spans
 from vehicle_sim.faults.active import TOLERANCE, ActiveFault, Moment
+
+_TUNNEL = mavlink.MAVLINK_MSG_ID_TUNNEL
+_STAMP = 4
+_STAMP_OF_TUNNEL = 13
+"""Bytes: payload type, target, length of the content (5); session and number of a stop plan."""
 
 Datagram = tuple[bytes, Address]
 """Bytes, and the address on the other side."""
@@ -20,7 +26,8 @@ Datagram = tuple[bytes, Address]
 class Frame(NamedTuple):
     """A frame, from ``start`` to ``end`` in the datagram; ``checksum``: offset of its checksum.
 
-    ``stamp``: the first four bytes of the payload, which in all streamed measurements and set-points are a time.
+    ``stamp``: what tells messages of a stream apart: the first four bytes of the payload, which in all streamed
+    measurements and set-points are a time; of TUNNEL what goes before a stop plan's times, with its number.
     """
 
     start: int
@@ -42,7 +49,8 @@ def frames(datagram: bytes) -> Iterator[Frame]:
             system, component, number = datagram[start + 3 : start + 6]
             body = start + 6
         length = datagram[start + 1]
-        yield Frame(start, end, body + length, system, component, number, datagram[body : body + min(length, 4)])
+        stamp = datagram[body : body + min(length, _STAMP_OF_TUNNEL if number == _TUNNEL else _STAMP)]
+        yield Frame(start, end, body + length, system, component, number, stamp)
 
 
 class Impairment:

@@ -4,12 +4,13 @@ import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.faults import timing as kinds
+from gcs.mavlink.stop_plan import PAYLOAD_TYPE
 from vehicle_sim.faults.active import ActiveFault, Moment
 from vehicle_sim.faults.impairment import DatagramChange, Frame, SampleImpairment, frames
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
 
-#: Streams of measurements and of set-points: each message begins with its stamp.
+#: Streams of measurements, set-points and stop plans.
 _STREAMED = frozenset(
     {
         mavlink.MAVLINK_MSG_ID_ATTITUDE,
@@ -23,9 +24,10 @@ _STREAMED = frozenset(
         mavlink.MAVLINK_MSG_ID_SET_ATTITUDE_TARGET,
         mavlink.MAVLINK_MSG_ID_SET_POSITION_TARGET_LOCAL_NED,
         mavlink.MAVLINK_MSG_ID_TRAJECTORY_REPRESENTATION_WAYPOINTS,
-        mavlink.MAVLINK_MSG_ID_TRAJECTORY_REPRESENTATION_BEZIER,
+        mavlink.MAVLINK_MSG_ID_TUNNEL,
     }
 )
+_STOP_PLAN = PAYLOAD_TYPE.to_bytes(2, "little")
 _OVERFLOW = 2**32 * 1e-3  # s
 
 
@@ -54,6 +56,8 @@ class LowRate(MessageFilter, of=kinds.LowRate):
     def keeps(self, frame: Frame) -> bool:
         """Keep a message by a credit that grows with every new stamp of its stream."""
         if frame.message_id not in _STREAMED:
+            return True
+        if frame.message_id == mavlink.MAVLINK_MSG_ID_TUNNEL and frame.stamp[:2] != _STOP_PLAN:
             return True
         key = frame.system, frame.component, frame.message_id
         stamp, credit, kept = self._streams.get(key, (None, 1.0 - self.fault.settings.share, False))

@@ -12,16 +12,18 @@ from gcs.campaign.faults.base_mission import BaseMission, read_base
 from gcs.campaign.faults.cases import CLEAN, Case, Seeds, SweptFault, label
 from gcs.campaign.faults.detection_table import DetectionRow, case_name, row_of
 from gcs.campaign.faults.drawn_mission import DrawnMission, ScenarioTable
+from gcs.campaign.faults.fault_pairs import PairedFault, PairsTable, pair_cases
 from gcs.campaign.scenarios.field import FIELD
 from gcs.config import UnusableFile
 from gcs.config.toml_file import ParsedFile, read_toml
 from gcs.config.validate import Key, NotNegative, strict
+from gcs.errors import UnusableInput
 from gcs.mission.faults import fault_problems, read_fault
 from gcs.mission.model import Limits, Name
 from gcs.mission.own import named
 
 Severity = Annotated[dict[str, Annotated[tuple[Any, ...], Field(min_length=1, max_length=1000)]], Field(min_length=1)]
-_OWN_KEYS = ("name", "severity", "start_between")
+_OWN_KEYS = ("name", "severity", "start_between", "one_vehicle")
 
 _OTHER_FILES = {
     "mission": "this is a mission, no campaign: gcs fly flies it",
@@ -41,7 +43,7 @@ class CampaignTable:
     seed_count: Annotated[int, Field(ge=1, le=10_000)] | None = None
     clean: bool = False
     controller: Literal["idc", "mpc", "paper"] = "idc"
-    require: Literal["within limits", "safe"] = "within limits"
+    require: Literal["within limits", "safe", "safe and disarmed"] = "within limits"
 
 
 @strict
@@ -52,6 +54,7 @@ class SweptTable:
     name: Name
     severity: Severity | None = None
     start_between: tuple[NotNegative, NotNegative] | None = None
+    one_vehicle: bool = False
 
 
 @strict
@@ -64,6 +67,7 @@ class CampaignTables:
     limits: Limits | None = field(default=None)
     row: Annotated[tuple[DetectionRow, ...], Field(max_length=1000)] = ()
     scenario: Annotated[tuple[ScenarioTable, ...], Field(max_length=1000)] = ()
+    pairs: PairsTable | None = None
 
 
 @dataclass(frozen=True)
@@ -79,8 +83,15 @@ class CampaignFile:
     require: str
     rows: tuple[DetectionRow, ...]
 
+    @property
+    def is_of_pairs(self) -> bool:
+        """Return True if the faults are flown alone and in pairs."""
+        return any(case.factors for case in self.cases)
+
     def seeds_of(self, case: Case) -> tuple[int, ...]:
-        """Return the seeds of a case: those of its row, or the campaign's."""
+        """Return the seeds of a case: its own, those of its row, or the campaign's."""
+        if case.seed is not None:
+            return (case.seed,)
         return row_of(self.rows, case.name, case.severity).seeds or self.seeds
 
 
@@ -116,12 +127,24 @@ def read_campaign(path: Path) -> CampaignFile:
     ]
     if problems:
         raise UnusableFile(list(dict.fromkeys(problems)))
-    if tables.campaign.clean:
-        cases = (Case(CLEAN, 1, "", ()), *cases)
     table = tables.campaign
+    if tables.pairs is not None:
+        team = min(base.system.team.vehicles for base in missions.values())
+        paired = [_paired_fault(tables, case) for case in cases]
+        try:
+            cases = tuple(case for seed in _seeds(table) for case in pair_cases(tables.pairs, paired, seed, team))
+        except UnusableInput as error:
+            raise UnusableFile([file.problem(("pairs",), str(error))]) from None
+    if table.clean:
+        cases = (Case(CLEAN, 1, "", ()), *cases)
     return CampaignFile(
         table.name, missions, _seeds(table), cases, tables.limits, table.controller, table.require, tables.row
     )
+
+
+def _paired_fault(tables: CampaignTables, case: Case) -> PairedFault:
+    one_vehicle = tuple(tables.fault[swept.table].one_vehicle for swept in case.faults)
+    return PairedFault(case_name(case.name, case.severity), case.faults, one_vehicle)
 
 
 def _seeds(table: CampaignTable) -> tuple[int, ...]:
@@ -215,7 +238,7 @@ def _cases(file: ParsedFile, tables: CampaignTables) -> tuple[tuple[Case, ...], 
             swept = []
             for i in members:
                 try:
-                    swept.append(_swept_fault(file, i, tables.fault[i], level))
+                    swept.append(_swept_fault(file, i, tables.fault[i], level, tables.pairs))
                 except UnusableFile as error:
                     problems += error.reasons
             severity = ", ".join(label(values) for i in members if (values := _at(tables.fault[i], level)))
@@ -225,8 +248,8 @@ def _cases(file: ParsedFile, tables: CampaignTables) -> tuple[tuple[Case, ...], 
     return tuple(cases), problems
 
 
-def _swept_fault(file: ParsedFile, index: int, table: SweptTable, level: int) -> SweptFault:
-    """The fault of one table at one severity. Raises :class:`UnusableFile`."""
+def _swept_fault(file: ParsedFile, index: int, table: SweptTable, level: int, pairs: PairsTable | None) -> SweptFault:
+    """The fault of one table at one severity; in ``pairs`` without its own start. Raises :class:`UnusableFile`."""
     raw = {key: value for key, value in file.data["fault"][index].items() if key not in _OWN_KEYS}
     values = _at(table, level)
     problems = []
@@ -241,6 +264,16 @@ def _swept_fault(file: ParsedFile, index: int, table: SweptTable, level: int) ->
         if low >= high:
             problems.append(file.problem(("fault", index, "start_between"), f"{low:g} s is not before {high:g} s"))
         values = {**values, "start": low}
+    if pairs is not None:
+        for key in ("start", "start_phase", "start_offset", "start_between"):
+            if key in file.data["fault"][index] or key in values:
+                problems.append(file.problem(("fault", index, key), "[pairs] says when faults start"))
+        values = {**values, "start_phase": next(iter(pairs.phases))}
+    if table.one_vehicle and (pairs is None or "vehicles" in raw):
+        reason = "goes with [pairs]" if pairs is None else "goes without vehicles"
+        problems.append(file.problem(("fault", index, "one_vehicle"), reason))
+    elif table.one_vehicle:
+        values = {**values, "vehicles": (1,)}
     if problems:
         raise UnusableFile(problems)
     # An error in a swept value is reported at the line of its list.

@@ -2,7 +2,7 @@
 
 import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -32,12 +32,17 @@ class SweptFault:
 
 @dataclass(frozen=True)
 class Case:
-    """Faults that are flown together, at the ``level``-th (from 1) of their severities; ``severity`` is its label."""
+    """Faults that are flown together, at the ``level``-th (from 1) of their severities; ``severity`` is its label.
+
+    ``seed``: of its only flight; None: it is flown with those of the campaign. ``factors`` of a sample of pairs.
+    """
 
     name: str
     level: int
     severity: str
     faults: tuple[SweptFault, ...]
+    seed: int | None = None
+    factors: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def kind(self) -> str:

@@ -13,21 +13,25 @@ from gcs.errors import UnusableInput
 from gcs.faults import KINDS
 from gcs.record.faults import FAULTS_FILE, fault_notes
 from gcs.record.landing import is_set_down
-from gcs.record.modes import stops_after
+from gcs.record.modes import armed_at_end, stops_after
 from gcs.record.outcome import Outcome
 from gcs.record.reader import read_json, read_table
 from gcs.record.summary import limits_not_held
 from gcs.record.tables import ALARMS
 
-WITHIN_LIMITS, SAFE = REQUIREMENTS = ("within limits", "safe")
-"""Conditions of a pass: completed within its limits; or set down safely in any phase, with its limits held."""
+WITHIN_LIMITS, SAFE, DISARMED = REQUIREMENTS = ("within limits", "safe", "safe and disarmed")
+"""Conditions of a pass: completed within its limits; set down safely in any phase, with its limits held; besides that
+the payload upright all the time, every vehicle disarmed at the end, and completed only where it arrived.
+"""
+LEAN_LIMIT_DEG = 20.0
+"""Largest roll or pitch of an upright payload in flight."""
 
 COLUMNS = (
     "number", "name", "fault", "kind", "level", "severity", "mission", "seed", "outcome", "passed", "within_limits",
-    "failures", "reason", "exit_code", "clearance_min_m", "tilt_max_deg", "uav_separation_min_m", "contacts", "landed",
-    "touchdown_mps", "end_tilt_deg", "position_rmse_m", "duration_s", "stop_s", "team_stop_s", "team_spread_s",
-    "detected_s", "detected_as", "false_alarms", "false_codes", "clean_s", "true_source", "isolation", "named_source",
-    "notes", "wall_s", "run_dir", "replay", "format",
+    "failures", "reason", "exit_code", "clearance_min_m", "tilt_max_deg", "lean_max_deg", "uav_separation_min_m",
+    "contacts", "landed", "touchdown_mps", "end_tilt_deg", "armed_at_end", "position_rmse_m", "duration_s", "stop_s",
+    "team_stop_s", "team_spread_s", "detected_s", "detected_as", "false_alarms", "false_codes", "clean_s",
+    "true_source", "isolation", "named_source", "notes", "wall_s", "run_dir", "replay", "format",
 )  # fmt: skip
 
 
@@ -61,6 +65,7 @@ def judge(case: Case, plan: FlightPlan, flown: Flown, run_dir: Path) -> dict[str
         "outcome": outcome(flown).value,
         "within_limits": flown.exit_code == 0,
         "failures": " ".join(limits_not_held(flown.summary)),
+        "armed_at_end": " ".join(map(str, _armed_at_end(run_dir))),
         "stop_s": stop,
         "team_stop_s": last,
         "team_spread_s": spread,
@@ -95,7 +100,21 @@ def meets(requirement: str, result: Result) -> bool:
     """Return whether a flight passes by one of :data:`REQUIREMENTS`."""
     if requirement == WITHIN_LIMITS:
         return result.within_limits
-    return is_safe(result) and not set(result.failures.split()) - {"arrival"}
+    failures = set(result.failures.split())
+    safe = is_safe(result) and not failures - {"arrival"}
+    if requirement == SAFE:
+        return safe
+    is_down = result.landed is not False and not result.armed_at_end
+    upright = result.lean_max_deg is None or result.lean_max_deg <= LEAN_LIMIT_DEG
+    return safe and is_down and upright and not (result.outcome == Outcome.COMPLETED and "arrival" in failures)
+
+
+def _armed_at_end(run_dir: Path) -> list[int]:
+    """Return the vehicles (system ids) that were armed at the end; none without a record of their modes."""
+    try:
+        return armed_at_end(run_dir)
+    except UnusableInput:
+        return []
 
 
 def first_start(run_dir: Path, count: int | None = None) -> float | None:
@@ -110,7 +129,8 @@ def first_start(run_dir: Path, count: int | None = None) -> float | None:
         if count is not None:
             others = [f for f in faults if (kind := KINDS.get(f.get("kind"))) is None or kind.family != "world"]
             faults = others or faults
-        return float(record["take_off_s"] + min(fault["activations"][0][0] for fault in faults if fault["activations"]))
+        first = min(fault["activations"][0][0] for fault in faults if fault["activations"])
+        return float((record["take_off_s"] or 0.0) + first)
     except (UnusableInput, KeyError, TypeError, IndexError, ValueError):
         return None
 

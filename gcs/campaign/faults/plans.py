@@ -11,7 +11,7 @@ from gcs.campaign.engine import PlanGenerator
 from gcs.campaign.faults.campaign_file import CampaignFile
 from gcs.campaign.faults.cases import CLEAN
 from gcs.campaign.faults.detection_table import Detections, detections
-from gcs.campaign.faults.judgement import COLUMNS, WITHIN_LIMITS, judge, meets
+from gcs.campaign.faults.judgement import COLUMNS, SAFE, WITHIN_LIMITS, judge, meets
 from gcs.campaign.flight import FlightPlan
 from gcs.campaign.folder import digest, plain
 from gcs.campaign.result import Result
@@ -44,7 +44,8 @@ class FaultFlights(PlanGenerator):
         if count > MAX_FLIGHTS:
             raise UnusableInput(f"{count} flights are more than {MAX_FLIGHTS}: list fewer faults, missions or seeds")
         if file.require != WITHIN_LIMITS:
-            self.passed_means = "set down safely, with their limits held"
+            armed = "" if file.require == SAFE else ", every vehicle disarmed"
+            self.passed_means = f"set down safely, with their limits held{armed}"
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -81,9 +82,13 @@ class FaultFlights(PlanGenerator):
 
     def report(self, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
         """Write ``results.csv`` (and ``results.parquet``), ``timing.csv``, ``rates.csv`` and the matrix."""
-        from gcs.campaign.faults.report import report  # matplotlib takes long to import
+        from gcs.campaign.faults.pairs_report import pairs_report  # matplotlib takes long to import
+        from gcs.campaign.faults.report import report
 
-        parts, files = report(self.file.name, results, out, self.detections(results))
+        if self.file.is_of_pairs:
+            parts, files = pairs_report(self.file.name, results, self.file.cases, out)
+        else:
+            parts, files = report(self.file.name, results, out, self.detections(results))
         if self._parquet:
             files.append(write_parquet(out / "results.parquet", flight_columns(COLUMNS), results))
         return parts, files

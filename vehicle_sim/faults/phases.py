@@ -1,0 +1,93 @@
+"""Phases of the flight as the simulator sees them, which start faults: the ground says nothing about them.
+
+Armed state, commanded thrust, onboard holds and the payload's contact with the ground are those of the simulation. What
+is flown between lift-off and touchdown follows from the mission: its trajectory, from the time at which the rotors have
+spooled up. Where an obstacle or a failsafe holds the flight up, the phases of the trajectory begin as planned.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from gcs.mission.model import Mission
+from idc_controller.arrays import Array
+
+if TYPE_CHECKING:
+    from gcs.flight.mission_trajectory import MissionTrajectory
+
+_PLANNED = frozenset({"climb", "fly", "hold", "land"})
+_RISEN = 0.05  # m; height of the payload above its pad from which ground contact is a touchdown
+
+
+class VehicleState(NamedTuple):
+    """A vehicle: armed; with thrust commanded; on an onboard plan (stop, hold, descent) in place of set-points."""
+
+    armed: bool
+    driven: bool
+    autonomous: bool
+
+
+class PhaseObserver:
+    """Times of the first entry into each phase of a flight of ``mission``, of the phases ``wanted`` only.
+
+    Names are those of :data:`gcs.mission.model.StartPhase`.
+    """
+
+    def __init__(self, mission: Mission, wanted: Collection[str]) -> None:
+        self.entered: dict[str, float] = {}
+        """Time of the entry into each phase (s)."""
+        self._mission, self._wanted = mission, frozenset(wanted)
+        self._rest: Array | None = None
+        self._trajectory: MissionTrajectory | None = None
+        self._driven: set[int] = set()
+        self._risen = False
+
+    @property
+    def pending(self) -> frozenset[str]:
+        """Phases wanted that have not been entered."""
+        return self._wanted - self.entered.keys()
+
+    def observe(
+        self, now: float, vehicles: Collection[VehicleState], payload: Array, *, standing: bool
+    ) -> dict[str, float]:
+        """Return the phases entered since the last call, with their times (s).
+
+        Args:
+            now: time (s).
+            vehicles: of the team, always in the same order.
+            payload: true position (3,) of the payload (NED, m).
+            standing: the payload touches pad or ground.
+        """
+        found = self._found(now, [*vehicles], payload, standing=standing) & self.pending
+        new = dict.fromkeys(found, now)
+        self.entered |= new
+        return new
+
+    def _found(self, now: float, vehicles: list[VehicleState], payload: Array, *, standing: bool) -> set[str]:
+        found = set()
+        if any(vehicle.armed for vehicle in vehicles):
+            found.add("arm")
+        driven = {i for i, vehicle in enumerate(vehicles) if vehicle.armed and vehicle.driven}
+        if self._trajectory is None and driven:
+            from gcs.flight.mission_trajectory import MissionTrajectory  # takes long to import, spent only where needed
+
+            spooled_up = now + self._mission.system.flight.takeoff_landing.spool_up_time
+            self._rest, self._trajectory = payload.copy(), MissionTrajectory(self._mission, payload.copy(), spooled_up)
+        if self._trajectory is None or self._rest is None:
+            return found
+        found.add("spool_up")
+        self._risen = self._risen or bool(self._rest[2] - payload[2] > _RISEN)
+        if now >= self._trajectory.start and self.pending & _PLANNED:
+            self._trajectory.reference(np.array([now]))  # it is lazy: ends of its parts are known once they are reached
+            found.add(self._trajectory.phase(now))
+        if any(vehicle.armed and vehicle.autonomous for vehicle in vehicles):
+            found.add("autonomous_landing")
+        if standing and self._risen:
+            found.add("spool_down")
+        if standing and self._driven - driven:
+            found.add("disarm")
+        self._driven |= driven
+        return found
