@@ -17,6 +17,7 @@ class FailsafeSettings(SettingsTable):
     )
     data_link_timeout: float = setting(3.0, "s", "without any message of any vehicle, ends control", gt=0.0)
     latency_limit: float = setting(0.11, "s", "one-way link latency above which the loop cannot be closed", gt=0.0)
+    overrun_limit: float = 1.6  # control periods between steps; the loop was held at 1.7, and lost at 1.95
     latency_window: float = 0.3  # s; in which every round trip must be late, or half of all usually
     parameter_tolerance: float = 0.01  # relative error of a vehicle's parameter before take-off
     placement_tolerance: float = 0.3  # m; from a vehicle to its place over the payload, before take-off

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum, IntEnum
 from typing import NamedTuple
 
@@ -15,6 +15,7 @@ from gcs.flight.phase import Phase
 from gcs.flight.plan_monitor import ImpactMonitor, PlanMonitor
 from gcs.flight.preflight import Preflight
 from gcs.flight.team import Team
+from gcs.flight.team_clock import StepIntervals
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.measurements import Estimate
 from idc_controller.guidance.progress import Guidance
@@ -86,6 +87,8 @@ class System:
     """What plans keep from obstacles (m): the margin, and the bound on the payload's deviation from its plan."""
     control_interval: float = 0.05
     """s; telemetry must not come less often."""
+    steps: StepIntervals = field(default_factory=StepIntervals)
+    """Of the control steps that were made."""
 
 
 class Moment(NamedTuple):

@@ -12,7 +12,7 @@ import numpy as np
 from gcs.flight.alarms import AlarmCode, Severity
 from gcs.flight.autopilot_requirements import missing
 from gcs.flight.condition import Check, Condition, Moment, Reaction, System, Trigger
-from gcs.flight.phase import Phase
+from gcs.flight.phase import IN_AIR, Phase
 from gcs.mavlink import px4
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.arrays import Array
@@ -219,6 +219,15 @@ def _data_link_lost(system: System, moment: Moment) -> Trigger | None:
     return Trigger(f"no message of any vehicle for {timeout:g} s") if lost else None
 
 
+def _control_overrun(system: System, moment: Moment) -> Trigger | None:
+    usual, limit = system.steps.usual, system.settings.overrun_limit * system.control_interval
+    if moment.phase not in (*IN_AIR, Phase.SPOOL_UP) or usual <= limit:
+        return None
+    return Trigger(
+        f"control steps are made every {usual * 1e3:.0f} ms (limit {limit * 1e3:.0f} ms): this machine is too busy"
+    )
+
+
 def _obstacle_sensing_lost(system: System, moment: Moment) -> Trigger | None:
     if not system.obstacle_map.sensing_lost:
         return None
@@ -378,6 +387,9 @@ class Failsafe(AlarmCode):
         "two or more vehicles have sent no position or no attitude for {telemetry_timeout} s")
     DATA_LINK_LOST = (Check.STEP, _data_link_lost, Reaction.END_CONTROL, "stay clear until the vehicles have landed",
         "no message of any vehicle for {data_link_timeout:g} s, once the descent has been commanded")
+    CONTROL_OVERRUN = (Check.STEP, _control_overrun, Reaction.AUTONOMOUS_LANDING,
+        "end other programs, or use a faster machine; of a simulation lower `--speed`",
+        "control steps are usually made {overrun_limit:g} control periods apart, or more")
     OBSTACLE_SENSING_LOST = (Check.IN_AIR, _obstacle_sensing_lost, Reaction.BRAKE_AND_LAND, "check the range sensors",
         "no vehicle detects obstacles, or what all of them detect is impossible")
     MAP_OFFSET = (Check.IN_AIR, _map_offset, Reaction.BRAKE_AND_LAND, "check positions and range sensors",

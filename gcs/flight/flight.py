@@ -169,6 +169,7 @@ class Flight:
             The set-points, None: nothing is to be sent; and what was estimated and decided, if anything was.
         """
         self.time, self.ground_time = time, now
+        self.system.steps.add(time)
         self._evaluate(Check.STEP, time, now)
         if self.phase in IN_AIR:
             self._evaluate(Check.IN_AIR, time, now)

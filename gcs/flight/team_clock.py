@@ -1,6 +1,9 @@
 """Team time: the boot time of the first vehicle, and the control steps on whole periods of it."""
 
 import math
+from collections import deque
+from itertools import pairwise
+from statistics import median
 
 from gcs.config.flight_settings import DEFAULTS, TimingSettings
 
@@ -51,6 +54,23 @@ class IntervalTimer:
         if due:
             self.next = now + self._interval
         return due
+
+
+class StepIntervals:
+    """Intervals of the last control steps: single ones may be late, of a busy machine most are."""
+
+    def __init__(self, number: int = 8) -> None:
+        self._times: deque[float] = deque(maxlen=number + 1)
+
+    def add(self, time: float) -> None:
+        """Take a step at ``time`` (s)."""
+        self._times.append(time)
+
+    @property
+    def usual(self) -> float:
+        """Their median (s); 0: there have been too few."""
+        times = self._times
+        return median(b - a for a, b in pairwise(times)) if len(times) == times.maxlen else 0.0
 
 
 class StepTimer:

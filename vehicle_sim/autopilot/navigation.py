@@ -5,8 +5,12 @@ import math
 from gcs.config.vehicle_settings import NavigationSettings
 from idc_controller.rotations_float import Quaternion, Vector, half_rotation, into_body, turned
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
-from vehicle_sim.autopilot.onboard_kernels import FRESH_AT, SAMPLE_TIME
+from vehicle_sim.autopilot.onboard_kernels import FRESH_AT, SAMPLE_TIME, THRUST, WEIGHT
 from vehicle_sim.world.sensors import ACCELEROMETER_RANGE, Measurement, is_rotation
+
+_STILL = 0.3
+"""m/s2; by which the specific force of a vehicle that stands differs from gravity: vibration."""
+_STILL_TIME = 0.5  # s
 
 
 class Navigation:
@@ -40,6 +44,8 @@ class Navigation:
         self._repeated = {"attitude": 0, "rates": 0}
         self._observed: tuple[Quaternion, Vector, Vector] | None = None  # attitude, rates, their derivative
         self._has_rates = True
+        self._still = 0.0
+        """For how long it has stood, while its velocity was not measured (s)."""
 
     @property
     def estimate(self) -> Measurement | None:
@@ -122,9 +128,16 @@ class Navigation:
         return self._known
 
     def _accelerated(self, velocity: Vector, attitude: Quaternion, step: float) -> Vector:
-        """Return the ``velocity`` (m/s) after a ``step`` (s) of the specific force: at rest after an impact."""
+        """Return the ``velocity`` (m/s) after a ``step`` (s) of the specific force.
+
+        It is zero at an impact, and where the vehicle stands (zero-velocity update): nothing accelerates it, although
+        its thrust is below its weight.
+        """
         assert self.specific_force is not None
-        if math.hypot(*self.specific_force) > ACCELEROMETER_RANGE:
+        size = math.hypot(*self.specific_force)
+        carried = self.arrays.targets.item(0, THRUST) < self.arrays.detectors.item(0, WEIGHT)
+        self._still = self._still + step if carried and abs(size - self._g) < _STILL else 0.0
+        if size > ACCELEROMETER_RANGE or self._still > _STILL_TIME:
             return 0.0, 0.0, 0.0
         w, x, y, z = attitude
         a_x, a_y, a_z = into_body((w, -x, -y, -z), self.specific_force)

@@ -28,6 +28,7 @@ _CODES: dict[tuple[str, ...], str] = {
     "messages_corrupted setpoints_lost all_telemetry_lost telemetry_lost link_latency_exceeded link_unfit "
     "autopilot_unfit offboard_left",
     (CLOCK,): "clock_error",
+    (GROUND,): "control_overrun",
     (NAVIGATION,): "stuck_sensor channel_isolated inconsistent_state measurements_rejected innovation_bias "
     "innovation_noise sensor_noise states_unknown telemetry_incomplete",
     (RANGE_SENSOR,): "range_sensor_failed range_sensor_silent range_sensor_displaced obstacle_sensing_lost",
