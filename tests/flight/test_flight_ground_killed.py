@@ -90,5 +90,20 @@ def test_link_to_one_vehicle_repeats_late(tmp_path, delay):
     check_set_down(*flown(tmp_path, speed=3.0, repeats_to=address_of(2), delay=delay))
 
 
+@pytest.mark.parametrize(
+    ("ground_lost", "wind"),
+    [(8.5, 0.0), pytest.param(7.8, 0.0, marks=pytest.mark.long), pytest.param(8.5, 4.0, marks=pytest.mark.long)],
+)
+def test_position_of_all_is_lost_and_the_ground(tmp_path, ground_lost, wind):
+    system_file(tmp_path)
+    faults = ['kind = "position_lost"\nstart = 8.0', f'kind = "partition"\nstart = {ground_lost}']
+    faults += [f'kind = "wind"\nvelocity = [{wind}, 0.0, 0.0]\nstart = 0.0'] * (wind > 0.0)
+    (tmp_path / "leg.toml").write_text(LEG.format(speed=1.5) + "".join(f"\n[[fault]]\n{fault}\n" for fault in faults))
+    with InProcessFlight(read_mission(tmp_path / "leg.toml"), tmp_path / "run") as flight:
+        flight.fly()
+        assert flight.run_without_ground()
+        check_set_down(flight.summary(), truth_of(tmp_path / "run"))
+
+
 def test_router_broadcasts_everything(tmp_path):
     check_set_down(*flown(tmp_path, speed=3.0, broadcasts=True))

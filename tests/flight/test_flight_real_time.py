@@ -1,7 +1,9 @@
 """Flights by the drivers of real time, over UDP, on a wall clock of the test's own: vehicles offer themselves."""
 
 import contextlib
+import math
 import threading
+from random import Random
 
 import pytest
 from flights import position_rmse, short_figure, truth_of
@@ -11,6 +13,7 @@ from gcs.app.fly import ground_station
 from gcs.drivers.connection import Connection
 from gcs.drivers.interrupt import Interrupt
 from gcs.drivers.realtime import run_in_real_time
+from gcs.flight.failsafe import Failsafe
 from gcs.mission.read import read_mission
 from gcs.record.recorder import FlightRecorder
 from vehicle_sim.app.drivers import RealTimeDriver
@@ -93,6 +96,20 @@ def mission(tmp_path):
 def test_real_time_flight_is_on_time(mission, tmp_path):
     flight = fly_in_real_time(mission, tmp_path / "run")
     check_flown(flight, tmp_path / "run", rmse=0.03)
+
+
+def test_ground_without_enough_processor_lands_the_vehicles_before_control_is_lost(tmp_path):
+    mission = read_mission(short_figure(tmp_path, duration=10.0, altitude=1.5))
+    random, stalls, start = Random(1), [], 9.0
+    while start < 30.0:
+        stalls.append((GROUND, start, random.uniform(0.06, 0.14)))
+        start += stalls[-1][2] + random.uniform(0.005, 0.03)
+    flight = fly_in_real_time(mission, tmp_path / "run", stalls)
+    assert flight.landed and Failsafe.CONTROL_OVERRUN in flight.failsafes.raised, flight.reason
+    truth = truth_of(tmp_path / "run")
+    assert truth["contacts"].max() == 0 and truth["payload_z_m"][-1] == pytest.approx(-0.3, abs=0.07)
+    upright = 1.0 - 2.0 * (truth["payload_qx"] ** 2 + truth["payload_qy"] ** 2)
+    assert upright.min() > math.cos(math.radians(5.0))
 
 
 @pytest.mark.parametrize(("stalled", "duration"), [(GROUND, 0.4), pytest.param(WORLD, 0.4, marks=pytest.mark.long)])

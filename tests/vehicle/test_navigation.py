@@ -10,6 +10,7 @@ from quaternions import quaternion_product
 from gcs.config.vehicle_settings import LandDetectorSettings, NavigationSettings
 from vehicle_sim.autopilot.navigation import Navigation
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
+from vehicle_sim.autopilot.onboard_kernels import THRUST
 from vehicle_sim.world.sensors import Measurement
 
 STEP, LAG, NOISE = 0.004, 0.05, math.radians(0.2)
@@ -172,3 +173,51 @@ def test_rates_are_observed_anew_after_they_were_back():
         if lost:
             off.append(np.linalg.norm(np.subtract(estimated.rates, body.rates)))
     assert max(off[100:]) < 2.0 * max(off[:100]) < 0.6
+
+
+def moving(forces, thrust, duration, lost=0.5, level=(1.0, 0.0, 0.0, 0.0)):
+    """[(estimate, true position, true velocity)] of a level body, the sensor of whose position sticks at ``lost`` (s).
+
+    ``forces(time)``: acceleration (m/s2, NED) other than by gravity and support.
+    """
+    rng, navigation, found = np.random.default_rng(3), navigation_alone(), []
+    navigation.arrays.targets[0, THRUST] = thrust
+    position, velocity, time, stuck = np.zeros(3), np.array([0.3, -0.2, 0.1]), 0.0, None
+    while time < duration:
+        acceleration = np.array(forces(time))
+        velocity = velocity + STEP * acceleration
+        position, time = position + STEP * velocity, time + STEP
+        navigation.specific_force = (*acceleration[:2], acceleration[2] - AIRFRAME.g)
+        noisy = Measurement(
+            time, level, tuple(rng.normal(0.0, 0.005, 3)), tuple(position + rng.normal(0.0, 0.02, 3)),
+            tuple(velocity + rng.normal(0.0, 0.02, 3)),
+        )  # fmt: skip
+        if time > lost:
+            stuck = stuck or noisy
+            noisy = noisy._replace(position=stuck.position, velocity=stuck.velocity)
+        found.append((navigation.update(noisy, (0.0, 0.0, 0.0), time), position, velocity))
+    return found
+
+
+def test_position_that_is_no_longer_measured_goes_on_with_the_specific_force():
+    weight = AIRFRAME.mass * AIRFRAME.g
+    found = moving(lambda time: (math.sin(time), 0.5 * math.cos(2.0 * time), -0.1), thrust=1.5 * weight, duration=10.0)
+    estimate, position, velocity = found[-1]
+    assert np.linalg.norm(np.array(estimate.velocity) - velocity) < 0.08  # as at the loss: its noise
+    assert np.linalg.norm(np.array(estimate.position) - position) < 0.08 * 9.5 + 0.06
+    assert np.linalg.norm(position - found[120][1]) > 5.0
+
+
+@pytest.mark.parametrize(("share", "stands"), [(0.9, True), (1.0, False)])
+def test_vehicle_without_position_that_nothing_accelerates_stands_if_its_thrust_is_below_its_weight(share, stands):
+    # At constant velocity in the air, its thrust is its weight.
+    found = moving(lambda time: (0.0, 0.0, 0.0), thrust=share * AIRFRAME.mass * AIRFRAME.g, duration=2.0)
+    assert (found[-1][0].velocity == (0.0, 0.0, 0.0)) is stands
+
+
+def test_impact_ends_the_velocity_of_a_vehicle_without_position():
+    def impact(time):
+        return (0.0, 0.0, -100.0) if 1.0 <= time < 1.0 + 0.9 * STEP else (0.0, 0.0, 0.0)
+
+    found = moving(impact, thrust=2.0 * AIRFRAME.mass * AIRFRAME.g, duration=1.2)
+    assert np.linalg.norm(found[-1][0].velocity) < 0.01 < np.linalg.norm(found[200][0].velocity)

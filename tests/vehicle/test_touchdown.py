@@ -101,7 +101,7 @@ def test_vehicle_whose_altitude_drifts_disarms_on_the_ground(holding: Flight, ra
 def test_vehicle_is_not_disarmed_in_the_air_by_what_repeats(
     holding: Flight, channels: tuple[str, ...], carried: float
 ) -> None:
-    at_rest = holding.body.measure()._replace(velocity=(0.0, 0.0, 0.0))
+    at_rest = holding.body.measure()._replace(velocity=(0.01, 0.0, 0.01))
     stuck = {channel: getattr(at_rest, channel) for channel in channels}
     holding.body.seen = lambda sample: sample._replace(**stuck)
     holding.body.mass = AIRFRAME.mass + carried

@@ -215,8 +215,8 @@ def detect_landings(
         if math.isnan(found[HOVER_THRUST]) or learns[i]:
             hover = lift if math.isnan(found[HOVER_THRUST]) else found[HOVER_THRUST]
             found[HOVER_THRUST] = hover + (lift - hover) * step / (d[HOVER_FILTER] + step)
-        # At rest without noise the rates are zero; otherwise a position and velocity that repeat are no measurement.
-        stuck = z == found[LAST_Z] and v_z == found[LAST_V_Z] and (s[10] != 0.0 or s[11] != 0.0 or s[12] != 0.0)
+        # A position and velocity that repeat are no measurement, unless the vehicle is known to stand.
+        stuck = z == found[LAST_Z] and v_z == found[LAST_V_Z] and v_z != 0.0
         found[LAST_Z], found[LAST_V_Z] = z, v_z
         sinks = max(found[VELOCITY], found[RATE]) > d[TOUCHDOWN_SINKING]
         if sinks or learns[i]:
