@@ -28,6 +28,8 @@ class _Entry:
     """Times at which they take effect on each vehicle (N,) (s)."""
     confirmed: list[bool]
     """Vehicles (N,) that have reported that, or that they never flew them."""
+    reported: list[bool]
+    """Vehicles (N,) that have reported to fly them; what seems to be lost may only be late."""
     exact: bool = True
     """True if all take effect at ``effective``."""
     numbers: list[float] = field(init=False)
@@ -103,7 +105,7 @@ class SetpointHistory:
         starts = [effective] * self._N
         sent = starts.copy() if sent_at is None else sent_at.tolist()
         at = self._at(effective) + 1
-        self._entries.insert(at, _Entry(effective, sent, u, u, starts, [False] * self._N))
+        self._entries.insert(at, _Entry(effective, sent, u, u, starts, [False] * self._N, [False] * self._N))
         self._effective.insert(at, effective)
 
     def switches(self, start: float, end: float) -> list[float]:
@@ -182,7 +184,7 @@ class SetpointHistory:
         delay = None
         latency = since - entries[first].sent_at[uav]
         if first and flown - first < s.losses_max and -s.punctuality <= latency <= latency_max:
-            if first == flown and not entries[first].confirmed[uav]:
+            if first == flown and not entries[first].reported[uav]:
                 delay = max(latency, 0.0)
                 changed = min(changed, self._expect(entries[first + 1 :], uav, delay))
             changed = min(changed, self._set_start(entries[first], uav, which, since))
@@ -205,7 +207,7 @@ class SetpointHistory:
 
     def _set_start(self, entry: _Entry, uav: int, which: list[int], since: float) -> float:
         """Set the time at which a set-point took effect; return from when on the history changes (s)."""
-        entry.confirmed[uav] = True
+        entry.confirmed[uav] = entry.reported[uav] = True
         assert entry.flown is not None and entry.sent is not None
         changed = math.inf
         if entry.flown is not entry.sent and any(entry.flown[k] != entry.sent[k] for k in which):
