@@ -17,6 +17,11 @@ class FailsafeSettings(SettingsTable):
     )
     data_link_timeout: float = setting(3.0, "s", "without any message of any vehicle, ends control", gt=0.0)
     latency_limit: float = setting(0.11, "s", "one-way link latency above which the loop cannot be closed", gt=0.0)
+    # s; one way, that is flown whatever share of the set-points is lost
+    latency_any_loss: float = 0.05
+    # s; mean age that losses may add to set-points, at `latency_limit` and at `latency_any_loss`: half of the margin
+    loss_age: tuple[float, float] = (0.007, 0.012)
+    timesync_timeout: float = 1.5  # s; without an answer: at 50 % loss both ways one in 75 such times without copies
     latency_window: float = 0.3  # s; in which every round trip must be late, or half of all usually
     parameter_tolerance: float = 0.01  # relative error of a vehicle's parameter before take-off
     placement_tolerance: float = 0.3  # m; from a vehicle to its place over the payload, before take-off

@@ -12,6 +12,7 @@ import numpy as np
 from gcs.flight.alarms import AlarmCode, Severity
 from gcs.flight.autopilot_requirements import missing
 from gcs.flight.condition import Check, Condition, Moment, Reaction, System, Trigger
+from gcs.flight.link_limit import latency_exceeded
 from gcs.flight.phase import Phase
 from gcs.mavlink import px4
 from gcs.mavlink.vehicle_link import VehicleLink
@@ -178,15 +179,7 @@ def _telemetry_lost(system: System, moment: Moment) -> Trigger | None:
 
 
 def _link_latency_exceeded(system: System, moment: Moment) -> Trigger | None:
-    limit, window = system.settings.latency_limit, system.settings.latency_window
-    for i, link in enumerate(system.team.links):
-        latency, clock = link.clock.delay, link.clock
-        if clock.round_trip_max > 2.0 * limit:  # or the least delay is not beyond the limit
-            latency = max(latency, clock.least_delay(window, moment.now))
-        if latency > limit:
-            text = f"link latency to vehicle {link.system_id} is {latency * 1e3:.0f} ms (limit {limit * 1e3:.0f} ms)"
-            return Trigger(text, (i,), latency)
-    return None
+    return latency_exceeded(system.team.links, system.settings, system.control_interval, moment.now)
 
 
 def _offboard_left(system: System, moment: Moment) -> Trigger | None:
@@ -366,7 +359,8 @@ class Failsafe(AlarmCode):
         "one vehicle has sent no telemetry for {telemetry_timeout} s")
     LINK_LATENCY_EXCEEDED = (Check.LINK, _link_latency_exceeded, Reaction.AUTONOMOUS_LANDING,
         "check its MAVLink link for congestion; of a simulation on a busy machine lower `--speed`",
-        "datagrams of one vehicle usually, or all for {latency_window} s, take more than {latency_limit} s one way")
+        "datagrams of one vehicle usually, or all for {latency_window} s, take more than {latency_limit} s one way, or "
+        "down to {latency_any_loss} s where set-points are lost; or TIMESYNC is not answered for {timesync_timeout} s")
     DISARMED_IN_FLIGHT = (Check.LINK, _disarmed_in_flight, Reaction.AUTONOMOUS_LANDING, "act on its STATUSTEXT",
         "a vehicle has disarmed itself")
     OFFBOARD_LEFT = (Check.LINK, _offboard_left, Reaction.AUTONOMOUS_LANDING, "act on its STATUSTEXT",

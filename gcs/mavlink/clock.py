@@ -145,6 +145,11 @@ class RemoteClock:
         return self._offset if self._slices else 0.0
 
     @property
+    def answered_at(self) -> float:
+        """Time at which the last answer came (s, ground); inf: none has come yet."""
+        return self._round_trips[-1][0] if self._round_trips else math.inf
+
+    @property
     def delay(self) -> float:
         """Link latency (s): half of the median round trip."""
         return self._trips.median / 2.0
