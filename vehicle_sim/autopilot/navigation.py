@@ -5,7 +5,7 @@ import math
 from gcs.config.vehicle_settings import NavigationSettings
 from idc_controller.rotations_float import Quaternion, Vector, half_rotation, turned
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
-from vehicle_sim.autopilot.onboard_kernels import FRESH_AT, SAMPLE_TIME
+from vehicle_sim.autopilot.onboard_kernels import FRESH_AT, REFUSED_UNTIL, SAMPLE_TIME
 from vehicle_sim.world.sensors import Measurement, is_rotation
 
 
@@ -86,7 +86,8 @@ class Navigation:
         time = sample.time if math.isfinite(sample.time) else known.time
         step = time - known.time
         has_attitude = self._is_alive("attitude", sample.attitude) and is_rotation(sample.attitude)
-        has_rates = self._has_rates = self._is_alive("rates", sample.rates)
+        refused = time < self.arrays.rate_checks.item(REFUSED_UNTIL)  # they contradict the attitude
+        has_rates = self._has_rates = self._is_alive("rates", sample.rates) and not refused
         self._raw = sample
         if has_rates and has_attitude and sample.is_usable():
             self._known, self._observed = sample, None
