@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from gcs.flight.alarms import AlarmCode, Severity
+from gcs.flight.attitude_error import attitude_wrong
 from gcs.flight.autopilot_requirements import missing
 from gcs.flight.condition import Check, Condition, Moment, Reaction, System, Trigger
 from gcs.flight.link_limit import latency_exceeded
@@ -384,6 +385,8 @@ class Failsafe(AlarmCode):
         "the payload's own unit reports a tilt beyond {tilt_limit:.2f} rad, and a vehicle is off its place")
     IMPACT = (Check.ESTIMATE, _impact, Reaction.BRAKE_AND_LAND, "inspect the vehicles and what was touched",
         "an accelerometer has exceeded its range since the payload is clear of the ground")
+    ATTITUDE_WRONG = (Check.ESTIMATE, attitude_wrong, Reaction.BRAKE_AND_LAND, "check its navigation",
+        "a vehicle pulls aside, as if its attitude were wrong on board by more than {attitude_error} rad")
     CLIMB_STALLED = (Check.ESTIMATE, _climb_stalled, Reaction.BRAKE_AND_LAND, "check the load, and what holds it",
         "the payload is still on the ground, below its plan by more than the margin and the bound on its deviation")
     DESCENT_STALLED = (Check.ESTIMATE, _descent_stalled, Reaction.AUTONOMOUS_LANDING, "check wind, load and positions",

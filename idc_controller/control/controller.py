@@ -124,6 +124,8 @@ class IntegratedDecisionController:
         stages = flat.part(slice(0, -1))
         error = self._error(estimate.x, stages.x[0])
         ready = self._stopwatch()
+        if not on_ground:
+            self._ground_controller.release()
         output = (self._ground_controller if on_ground else self.tracker).track(error, stages)
         tracked = self._stopwatch()
         u = setpoints_from_force_components(
