@@ -67,12 +67,14 @@ class Confirmation(NamedTuple):
     """Result of a vehicle's report of the set-point that it flew.
 
     ``as_sent``: whether the vehicle flew what it was sent; None: not decided yet. ``corrected_from``: from when on the
-    history has changed (s). ``delay``: from sending the set-point to its effect (s); None: known before.
+    history has changed (s). ``delay``: from sending the set-point to its effect (s); None: known before. ``late``: it had
+    been taken for lost.
     """
 
     as_sent: bool | None = None
     corrected_from: float | None = None
     delay: float | None = None
+    late: bool = False
 
 
 class SetpointHistory:
@@ -181,7 +183,7 @@ class SetpointHistory:
         first = flown
         while first > 0 and entries[first - 1].is_reported(which, reported, s):
             first -= 1
-        delay = None
+        delay, late = None, entries[flown].confirmed[uav] and not entries[flown].reported[uav]
         latency = since - entries[first].sent_at[uav]
         if first and flown - first < s.losses_max and -s.punctuality <= latency <= latency_max:
             if first == flown and not entries[first].reported[uav]:
@@ -194,7 +196,7 @@ class SetpointHistory:
             self._learn(uav, float(not as_sent))
         elif changed == math.inf and delay is None:
             return None
-        return Confirmation(as_sent, changed if changed < math.inf else None, delay)
+        return Confirmation(as_sent, changed if changed < math.inf else None, delay, late)
 
     def _set_lost(self, entry: _Entry, uav: int, which: list[int], flown: Sequence[float]) -> float:
         """Set what a vehicle flew instead of a lost set-point; return from when on the history changes (s)."""
