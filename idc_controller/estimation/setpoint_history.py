@@ -67,8 +67,8 @@ class Confirmation(NamedTuple):
     """Result of a vehicle's report of the set-point that it flew.
 
     ``as_sent``: whether the vehicle flew what it was sent; None: not decided yet. ``corrected_from``: from when on the
-    history has changed (s). ``delay``: from sending the set-point to its effect (s); None: known before. ``late``: it had
-    been taken for lost.
+    history has changed (s). ``delay``: from sending the set-point to its effect (s); None: known before. ``late``: it
+    had been taken for lost.
     """
 
     as_sent: bool | None = None
