@@ -77,7 +77,8 @@ class Swarm:
         self._periods = [rates.physics // rate for rate in (rates.onboard, rates.truth, config.range_sensor.rate)]
         """Physics steps between onboard steps, rows of the truth, and scans of the range sensors."""
         self._contacts = 0
-        arrays = OnboardArrays.of(airframes, onboard.land_detector)
+        noise = math.radians(config.sensors.attitude_deg)
+        arrays = OnboardArrays.of(airframes, onboard.land_detector, noise, onboard.navigation)
         self.vehicles = tuple(
             Vehicle(
                 i, airframe, onboard_rate=rates.onboard, telemetry_rate=rates.telemetry, home=home or DEFAULT_HOME,

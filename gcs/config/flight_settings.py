@@ -18,6 +18,11 @@ class FailsafeSettings(SettingsTable):
     data_link_timeout: float = setting(3.0, "s", "without any message of any vehicle, ends control", gt=0.0)
     latency_limit: float = setting(0.11, "s", "one-way link latency above which the loop cannot be closed", gt=0.0)
     overrun_limit: float = 1.6  # control periods between steps; the loop was held at 1.7, and lost at 1.95
+    # s; one way, that is flown whatever share of the set-points is lost
+    latency_any_loss: float = 0.05
+    # s; mean age that losses may add to set-points, at `latency_limit` and at `latency_any_loss`: half of the margin
+    loss_age: tuple[float, float] = (0.007, 0.012)
+    timesync_timeout: float = 1.5  # s; without an answer: at 50 % loss both ways one in 75 such times without copies
     latency_window: float = 0.3  # s; in which every round trip must be late, or half of all usually
     parameter_tolerance: float = 0.01  # relative error of a vehicle's parameter before take-off
     placement_tolerance: float = 0.3  # m; from a vehicle to its place over the payload, before take-off
@@ -32,6 +37,9 @@ class FailsafeSettings(SettingsTable):
     )
     deviation_time: float = 0.2  # s; for which they must be that far off
     confirming_deviation: float = 0.4  # m; of one vehicle, which confirms that the payload's unit reports it overturned
+    attitude_error: float = (
+        0.07  # rad; of a vehicle on board, by the force that it pulls aside with: ten times the noise
+    )
     tilt_time: float = 0.5  # s; for which the tilt must exceed its limit
     descent_timeout: float = 15.0  # s; after the descent's planned end, with the payload still high
     arm_timeout: float = 12.0  # s; until all vehicles are in OFFBOARD and armed

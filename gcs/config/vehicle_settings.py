@@ -47,6 +47,11 @@ class NavigationSettings(SettingsTable):
     # rad/s; bandwidth of body rates estimated from the attitude: above that of the attitude loop
     rates_bandwidth: float = 30.0
     gap_max: float = 0.05  # s; between samples; after a longer gap that estimate begins anew
+    rates_window: float = 0.1  # s; over which body rates are compared with the change of the attitude
+    # standard deviations of the difference of two attitudes by which rates may miss it: chi-square of 3 axes at 1e-9
+    rates_sigmas: float = 6.7
+    rates_error: float = 0.01  # rad; by which they may miss it without noise: the samples are integrated one by one
+    rates_refused: float = 2.0  # s; for which rates that miss it are not used
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -10,8 +10,10 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from gcs.flight.alarms import AlarmCode, Severity
+from gcs.flight.attitude_error import attitude_wrong
 from gcs.flight.autopilot_requirements import missing
 from gcs.flight.condition import Check, Condition, Moment, Reaction, System, Trigger
+from gcs.flight.link_limit import latency_exceeded
 from gcs.flight.phase import IN_AIR, Phase
 from gcs.mavlink import px4
 from gcs.mavlink.vehicle_link import VehicleLink
@@ -181,15 +183,7 @@ def _telemetry_lost(system: System, moment: Moment) -> Trigger | None:
 
 
 def _link_latency_exceeded(system: System, moment: Moment) -> Trigger | None:
-    limit, window = system.settings.latency_limit, system.settings.latency_window
-    for i, link in enumerate(system.team.links):
-        latency, clock = link.clock.delay, link.clock
-        if clock.round_trip_max > 2.0 * limit:  # or the least delay is not beyond the limit
-            latency = max(latency, clock.least_delay(window, moment.now))
-        if latency > limit:
-            text = f"link latency to vehicle {link.system_id} is {latency * 1e3:.0f} ms (limit {limit * 1e3:.0f} ms)"
-            return Trigger(text, (i,))
-    return None
+    return latency_exceeded(system.team.links, system.settings, system.control_interval, moment.now)
 
 
 def _offboard_left(system: System, moment: Moment) -> Trigger | None:
@@ -378,7 +372,8 @@ class Failsafe(AlarmCode):
         "one vehicle has sent no telemetry for {telemetry_timeout} s")
     LINK_LATENCY_EXCEEDED = (Check.LINK, _link_latency_exceeded, Reaction.AUTONOMOUS_LANDING,
         "check its MAVLink link for congestion; of a simulation on a busy machine lower `--speed`",
-        "datagrams of one vehicle usually, or all for {latency_window} s, take more than {latency_limit} s one way")
+        "datagrams of one vehicle usually, or all for {latency_window} s, take more than {latency_limit} s one way, or "
+        "down to {latency_any_loss} s where set-points are lost; or TIMESYNC is not answered for {timesync_timeout} s")
     DISARMED_IN_FLIGHT = (Check.LINK, _disarmed_in_flight, Reaction.AUTONOMOUS_LANDING, "act on its STATUSTEXT",
         "a vehicle has disarmed itself")
     OFFBOARD_LEFT = (Check.LINK, _offboard_left, Reaction.AUTONOMOUS_LANDING, "act on its STATUSTEXT",
@@ -405,6 +400,8 @@ class Failsafe(AlarmCode):
         "the payload's own unit reports a tilt beyond {tilt_limit:.2f} rad, and a vehicle is off its place")
     IMPACT = (Check.ESTIMATE, _impact, Reaction.BRAKE_AND_LAND, "inspect the vehicles and what was touched",
         "an accelerometer has exceeded its range since the payload is clear of the ground")
+    ATTITUDE_WRONG = (Check.ESTIMATE, attitude_wrong, Reaction.BRAKE_AND_LAND, "check its navigation",
+        "a vehicle pulls aside, as if its attitude were wrong on board by more than {attitude_error} rad")
     CLIMB_STALLED = (Check.ESTIMATE, _climb_stalled, Reaction.BRAKE_AND_LAND, "check the load, and what holds it",
         "the payload is still on the ground, below its plan by more than the margin and the bound on its deviation")
     DESCENT_STALLED = (Check.ESTIMATE, _descent_stalled, Reaction.AUTONOMOUS_LANDING, "check wind, load and positions",

@@ -23,6 +23,16 @@ class _RoundTrips(NamedTuple):
     """Of the last few."""
 
 
+class _Slice:
+    """What arrived in a slice of time, which begins with the arrival of a stamp (s)."""
+
+    __slots__ = ("begin", "lead", "trip")
+
+    def __init__(self, begin: float, lead: float) -> None:
+        self.begin, self.lead, self.trip = begin, lead, math.inf
+        """Its beginning, the greatest lead of a stamp, and the shortest round trip (s); inf: no answer came."""
+
+
 class RemoteClock:
     """Offset and delay of a vehicle from TIMESYNC round trips and from the stamps of its telemetry.
 
@@ -32,8 +42,9 @@ class RemoteClock:
 
     def __init__(self, settings: ClockSettings | None = None) -> None:
         self._settings = settings = settings or ClockSettings()
-        self._leads: deque[list[float]] = deque(maxlen=settings.slices)  # [beginning of the slice, greatest lead in it]
+        self._slices: deque[_Slice] = deque(maxlen=settings.slices)
         self._lead = -math.inf
+        self._offset = 0.0
         self._newest = -math.inf
         self.newest: tuple[float, float] | None = None
         """The last stamp in order (s, vehicle), without steps of the clock, and its arrival (s, ground)."""
@@ -61,16 +72,18 @@ class RemoteClock:
         if was_set_back:
             self.set_back += self._lead - lead
         if began_anew := was_set_back or lead < self._lead - self._settings.reboot:
-            self._leads.clear()
+            self._slices.clear()
         if in_order:
             self._newest = boot_time
             self.newest = boot_time + self.set_back, arrival
-        if not self._leads or arrival - self._leads[-1][0] >= self._settings.slice:
-            self._leads.append([arrival, lead])
-            self._lead = max(greatest for _, greatest in self._leads)
-        elif lead > self._leads[-1][1]:
-            self._leads[-1][1] = lead
+        if not self._slices or arrival - self._slices[-1].begin >= self._settings.slice:
+            self._slices.append(_Slice(arrival, lead))
+            self._lead = max(of.lead for of in self._slices)
+            self._set_offset()
+        elif lead > self._slices[-1].lead:
+            self._slices[-1].lead = lead
             self._lead = max(self._lead, lead)
+            self._set_offset()
         self.lag = self._lead - lead
         if abs(self._lead - before) > self._settings.jump:
             self.jumped_at = arrival
@@ -92,24 +105,52 @@ class RemoteClock:
         if ts1 in self._requests:
             self._requests.remove(ts1)
             sent = ts1 * 1e-9
-            self._round_trips.append((arrival, max(arrival - sent, 0.0)))
+            self._round_trips.append((arrival, trip := max(arrival - sent, 0.0)))
             del self._round_trips[: -self._settings.round_trips]
-            newest = [trip for _, trip in self._round_trips]
+            # Where requests or answers are lost, those kept reach back to a latency that may be no more.
+            since = arrival - self._settings.slices * self._settings.slice
+            newest = [trip for came, trip in self._round_trips if came > since]
             trips, recent = sorted(newest), newest[-self._settings.recent_round_trips :]
             spread = trips[3 * (len(trips) - 1) // 4] - trips[0]
             self._trips = _RoundTrips(median(trips), trips[0], spread, max(recent))
-            if tc1 is not None and len(trips) == self._settings.round_trips:
+            if tc1 is not None and len(self._round_trips) == self._settings.round_trips:
                 self.bounds.add_answer(tc1 * 1e-9, sent, arrival, self._lead + self.spread)
+            if self._slices:
+                self._slices[-1].trip = min(self._slices[-1].trip, trip)
+                self._set_offset()
+
+    def _set_offset(self) -> None:
+        """Estimate the offset by the stamps of those slices in which the latency was least.
+
+        On a lossy link few requests are answered: with stamps of a latency that has grown and round trips from before,
+        or the other way round, the offset would be wrong by that growth. The newest slice counts before its first
+        answer, too: a clock that is set ahead is followed at once.
+        """
+        answered = [of for of in self._slices if of.trip < math.inf]
+        if not answered:
+            self._offset = self._lead + (self._round_trips[-1][1] if self._round_trips else 0.0) / 2.0
+            return
+        shortest = min(of.trip for of in answered)
+        near = shortest + self._settings.jump
+        leads = [of.lead for of in answered if of.trip <= near]
+        if self._slices[-1].trip == math.inf and answered[-1].trip <= near:
+            leads.append(self._slices[-1].lead)
+        self._offset = max(leads) + shortest / 2.0
 
     @property
     def known(self) -> bool:
         """True if there is an estimate."""
-        return bool(self._leads)
+        return bool(self._slices)
 
     @property
     def offset(self) -> float:
         """Vehicle boot time less ground time (s)."""
-        return self._lead + self._trips.shortest / 2.0 if self._leads else 0.0
+        return self._offset if self._slices else 0.0
+
+    @property
+    def answered_at(self) -> float:
+        """Time at which the last answer came (s, ground); inf: none has come yet."""
+        return self._round_trips[-1][0] if self._round_trips else math.inf
 
     @property
     def delay(self) -> float:

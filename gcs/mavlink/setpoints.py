@@ -44,7 +44,7 @@ class SetpointStream:
         self._clock, self._parameters, self._settings = clock, parameters, settings
         self._delays: deque[float] = deque(maxlen=settings.delays)
         self._last_stamp = -math.inf
-        self.loss = 0.0
+        self.loss = self._loss_before = 0.0
         """Share of the set-points that do not arrive, by its confirmations."""
         self.lost = 0
         """Number of set-points found to be lost."""
@@ -84,9 +84,13 @@ class SetpointStream:
         """Take the vehicle's report of a set-point that it flew."""
         if confirmation.delay is not None:
             self._delays.append(confirmation.delay)
-        if (flown := confirmation.as_sent) is not None:
+        if confirmation.late:  # nothing was lost since: the latency has grown
+            self.loss = self._loss_before
+        elif (flown := confirmation.as_sent) is not None:
             self.loss += self._settings.loss_filter * (float(not flown) - self.loss)
             self.lost += not flown
+            if flown:
+                self._loss_before = self.loss
 
     @property
     def _onboard_period(self) -> float:

@@ -123,6 +123,8 @@ class IntegratedDecisionController:
             estimate.x, stages.x[0], hover, self.layout.n.start, s.position_error_limit, s.velocity_error_limit
         )
         ready = self._stopwatch()
+        if not on_ground:
+            self._ground_controller.release()
         output = (self._ground_controller if on_ground else self.tracker).track(error, stages)
         tracked = self._stopwatch()
         u = setpoints(output.delta_u, flat.u[-1], hover, s.least_lift)

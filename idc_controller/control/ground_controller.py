@@ -26,6 +26,10 @@ class GroundController:
     ) -> None:
         """``period`` is the control period (s)."""
         self.layout = model.layout
+        self._lean = settings.lean_deadband
+        self._step = settings.lean_gain * period
+        self._held = np.zeros((model.layout.number_of_uavs, 2))
+        """Tilt set-points (N, 2) against what makes links lean."""
         self.gains = np.array([pendulum_gain(model, i, period, settings) for i in range(model.layout.number_of_uavs)])
 
     def track(self, error: Array, reference: FlatReference) -> TrackingOutput:
@@ -33,8 +37,14 @@ class GroundController:
         layout = self.layout
         parts = (layout.s, layout.s_dot, layout.n, layout.n_dot, layout.n_acc)
         states = np.stack([error[part].reshape(-1, 2) for part in parts], axis=1)  # (N, 5, 2)
-        tilt = -np.einsum("ik,ikc->ic", self.gains, states)
+        lean = states[:, 0]
+        self._held += self._step * (lean - np.clip(lean, -self._lean, self._lean))
+        tilt = self._held - np.einsum("ik,ikc->ic", self.gains, states)
         return TrackingOutput(np.concatenate([tilt.ravel(), np.zeros(layout.number_of_uavs)]))
+
+    def release(self) -> None:
+        """Forget what made links lean: the payload is in the air."""
+        self._held[:] = 0.0
 
 
 def pendulum_dynamics(model: LinearModel, uav: int, share: float) -> tuple[Array, Array]:

@@ -84,6 +84,8 @@ class GroundControlSettings(SettingsTable):
     design_share: float = 0.8  # thrust for which the gain is designed, over hover thrust
     # weights of link tilt, its rate, UAV tilt, its rate, its acceleration
     state: tuple[float, float, float, float, float] = (100.0, 80.0, 1.0, 0.1, 0.0)
+    lean_deadband: float = 0.02  # sine of a link's lean that is left; more is taken for wind or a wrong attitude
+    lean_gain: float = 0.35  # 1/s; with which tilt set-points grow against it
     setpoint: float = 200.0  # weight of the tilt set-point: a lower one needs telemetry that is less than 0.2 s late
 
 

@@ -28,6 +28,8 @@ class _Entry:
     """Times at which they take effect on each vehicle (N,) (s)."""
     confirmed: list[bool]
     """Vehicles (N,) that have reported that, or that they never flew them."""
+    reported: list[bool]
+    """Vehicles (N,) that have reported to fly them; what seems to be lost may only be late."""
     exact: bool = True
     """True if all take effect at ``effective``."""
     numbers: list[float] = field(init=False)
@@ -65,12 +67,14 @@ class Confirmation(NamedTuple):
     """Result of a vehicle's report of the set-point that it flew.
 
     ``as_sent``: whether the vehicle flew what it was sent; None: not decided yet. ``corrected_from``: from when on the
-    history has changed (s). ``delay``: from sending the set-point to its effect (s); None: known before.
+    history has changed (s). ``delay``: from sending the set-point to its effect (s); None: known before. ``late``: it
+    had been taken for lost.
     """
 
     as_sent: bool | None = None
     corrected_from: float | None = None
     delay: float | None = None
+    late: bool = False
 
 
 class SetpointHistory:
@@ -103,7 +107,7 @@ class SetpointHistory:
         starts = [effective] * self._N
         sent = starts.copy() if sent_at is None else sent_at.tolist()
         at = self._at(effective) + 1
-        self._entries.insert(at, _Entry(effective, sent, u, u, starts, [False] * self._N))
+        self._entries.insert(at, _Entry(effective, sent, u, u, starts, [False] * self._N, [False] * self._N))
         self._effective.insert(at, effective)
 
     def switches(self, start: float, end: float) -> list[float]:
@@ -179,10 +183,10 @@ class SetpointHistory:
         first = flown
         while first > 0 and entries[first - 1].is_reported(which, reported, s):
             first -= 1
-        delay = None
+        delay, late = None, entries[flown].confirmed[uav] and not entries[flown].reported[uav]
         latency = since - entries[first].sent_at[uav]
         if first and flown - first < s.losses_max and -s.punctuality <= latency <= latency_max:
-            if first == flown and not entries[first].confirmed[uav]:
+            if first == flown and not entries[first].reported[uav]:
                 delay = max(latency, 0.0)
                 changed = min(changed, self._expect(entries[first + 1 :], uav, delay))
             changed = min(changed, self._set_start(entries[first], uav, which, since))
@@ -192,7 +196,7 @@ class SetpointHistory:
             self._learn(uav, float(not as_sent))
         elif changed == math.inf and delay is None:
             return None
-        return Confirmation(as_sent, changed if changed < math.inf else None, delay)
+        return Confirmation(as_sent, changed if changed < math.inf else None, delay, late)
 
     def _set_lost(self, entry: _Entry, uav: int, which: list[int], flown: Sequence[float]) -> float:
         """Set what a vehicle flew instead of a lost set-point; return from when on the history changes (s)."""
@@ -205,7 +209,7 @@ class SetpointHistory:
 
     def _set_start(self, entry: _Entry, uav: int, which: list[int], since: float) -> float:
         """Set the time at which a set-point took effect; return from when on the history changes (s)."""
-        entry.confirmed[uav] = True
+        entry.confirmed[uav] = entry.reported[uav] = True
         assert entry.flown is not None and entry.sent is not None
         changed = math.inf
         if entry.flown is not entry.sent and any(entry.flown[k] != entry.sent[k] for k in which):

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from link_margin_page import hover_loop
 from scipy.spatial import KDTree
 
 from gcs.campaign.faults.campaign_file import read_campaign
@@ -44,6 +45,11 @@ def geometry() -> dict[str, Any]:
         "separation_limit": parameters.separation(system.control.mpc.separation_share),
         "separation_passed": least_separation(system),
     }
+
+
+def links() -> dict[str, Any]:
+    """Return the delay (ms) that is not compensated at which the loop at hover becomes unstable."""
+    return {"delay_margin_ms": 1e3 * hover_loop().delay_margin()}
 
 
 def sight() -> dict[str, Any]:

@@ -32,3 +32,21 @@ def slowest(gain, share, late):
 @pytest.mark.parametrize("late", [0, 1, 2, 3])
 def test_ground_controller_is_stable_with_loop_delay(share, late):
     assert slowest(GAINS[0], share, late) < 0.985
+
+
+@pytest.mark.parametrize("share", [0.55, 0.8, 1.0])
+def test_uav_whose_attitude_is_wrong_stays_upright_over_a_payload_on_the_ground(share):
+    controller, layout, wrong = GroundController(MODEL, PERIOD), MODEL.layout, 0.15  # rad, on board
+    A, B = pendulum_dynamics(MODEL, 0, share)
+    block = np.zeros((7, 7))  # the state of one axis, its set-point, and the wrong part of its tilt
+    block[:5, :5], block[:5, 5:6], block[:5, 6] = A, B, A[:, 2]
+    step, x, error, leans = expm(block * PERIOD), np.zeros(5), np.zeros(layout.size), []
+    for _ in range(400):
+        for part, value in zip((layout.s, layout.s_dot, layout.n, layout.n_dot, layout.n_acc), x, strict=True):
+            error[part.start] = value
+        tilt = controller.track(error, None).delta_u[0]
+        x = step[:5, :5] @ x + step[:5, 5] * tilt + step[:5, 6] * wrong
+        leans.append(abs(x[0]))
+    assert max(leans) < 0.25 and max(leans[-40:]) < 0.04
+    controller.release()
+    assert np.all(controller.track(np.zeros(layout.size), None).delta_u == 0.0)

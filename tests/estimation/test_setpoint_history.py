@@ -64,3 +64,17 @@ def test_setpoint_sent_after_a_late_one_is_expected_late():
     mean = history.in_force(0.16, 0.21).u  # where the next one should have acted
     assert mean[SECOND] == pytest.approx(0.2 * SENT[1][SECOND] + 0.8 * SENT[2][SECOND])
     assert mean[[0, 1, 4]] == pytest.approx(SENT[3][[0, 1, 4]])
+
+
+def test_delay_of_setpoints_that_come_two_periods_late_is_measured():
+    history, shift = SetpointHistory(N), 0.1
+    delays = []  # each is overdue, and seems to be lost, when the one before is reported
+    for k in range(8):
+        history.add(0.05 * k, np.full(3 * N, 0.01 * k), np.full(N, 0.05 * k))
+        if k >= 2:  # of the one that was sent two periods ago and acts now; its report comes a moment later
+            since = 0.05 * (k - 2) + shift
+            found = history.confirm(1, since, since + 0.03, np.full(3, 0.01 * (k - 2)), jitter=0.0, latency_max=0.2)
+            delays.append(found.delay)
+        if k > 3:
+            assert found.late  # what makes the loss that was counted before undone
+    assert delays.count(pytest.approx(shift)) >= 3

@@ -30,16 +30,19 @@ DOCS = Path(__file__).parents[2] / "docs"
 PAGE, SETTINGS = DOCS / "failsafes.md", DOCS / "settings.md"
 
 
-def link(number, *, age=0.0, attitude_age=0.0, latency=0.0, armed=True, offboard=True):
+def link(number, *, age=0.0, attitude_age=0.0, latency=0.0, loss=0.0, answer_age=0.0, armed=True, offboard=True):
     """Link of a vehicle at ground time 100 s."""
-    clock = SimpleNamespace(delay=latency, round_trip_max=math.inf, least_delay=lambda window, now: 0.0)
+    clock = SimpleNamespace(
+        delay=latency, round_trip_max=math.inf, least_delay=lambda window, now: 0.0, answered_at=100.0 - answer_age
+    )
     status = SimpleNamespace(
         armed=armed, offboard=offboard, custom_mode=0, last_text="", parameters={"COM_OF_LOSS_T": 0.46}
     )
     return SimpleNamespace(
         system_id=number, telemetry_received_at=100.0 - age,
         complete_telemetry_received_at=100.0 - max(age, attitude_age), received_at=100.0 - age,
-        clock=clock, status=status, address=("10.0.0.7", number), conflict=AddressConflict(),
+        clock=clock, setpoints=SimpleNamespace(loss=loss), status=status, address=("10.0.0.7", number),
+        conflict=AddressConflict(),
     )  # fmt: skip
 
 
@@ -74,6 +77,7 @@ def test_codes_are_unique():
 
 def test_healthy_links_raise_no_failsafe():
     assert evaluated(state(*(link(i) for i in range(1, 5)))) is None
+    assert evaluated(state(link(1, latency=0.1, loss=0.1), link(2, latency=0.045, loss=0.5, answer_age=1.4))) is None
 
 
 @pytest.mark.parametrize(
@@ -84,6 +88,15 @@ def test_healthy_links_raise_no_failsafe():
         (
             [link(1), link(2, latency=0.13)],
             Failsafe.LINK_LATENCY_EXCEEDED, "link latency to vehicle 2 is 130 ms (limit 110 ms)",
+        ),
+        (
+            [link(1), link(2, latency=0.08, loss=0.2)],
+            Failsafe.LINK_LATENCY_EXCEEDED,
+            "link latency to vehicle 2 is 80 ms (limit 50 ms at 20% loss of set-points)",
+        ),
+        (
+            [link(1, answer_age=1.6), link(2)], Failsafe.LINK_LATENCY_EXCEEDED,
+            "link latency to vehicle 1 is not known: no TIMESYNC answer for 1.6 s",
         ),
         ([link(1), link(2, armed=False)], Failsafe.DISARMED_IN_FLIGHT, "vehicle 2 has disarmed itself"),
         ([link(1, offboard=False), link(2)], Failsafe.OFFBOARD_LEFT, "vehicle 1 has left OFFBOARD"),

@@ -15,6 +15,8 @@ from gcs.mavlink.layout import packed
 from gcs.mavlink.setpoints import IGNORE_RATES, SetpointStream, attitude_target
 from gcs.mavlink.settings import LinkSettings
 from gcs.mavlink.stop_plan import PAYLOAD_TYPE, StopPlanContent, read_stop_plan, stop_plan_message
+from gcs.mavlink.vehicle_link import VehicleLink
+from idc_controller.estimation.setpoint_history import Confirmation
 from idc_controller.rotations_float import attitude_of_direction
 
 ANGLES = st.floats(-math.pi, math.pi)
@@ -66,3 +68,17 @@ def test_setpoint_takes_the_latency_of_the_link_and_an_onboard_step_where_its_ra
     stream = SetpointStream(SimpleNamespace(delay=0.03, round_trip_max=0.1), parameters, LinkSettings())
     assert stream.delay == pytest.approx(0.03 + step)
     assert stream.delay_max == pytest.approx(0.1 + 2.0 * step + LinkSettings().stamp_error)
+
+
+def test_setpoints_that_were_only_late_leave_no_loss():
+    link = VehicleLink(1, None)
+    for _ in range(3):
+        link.setpoints.confirm(Confirmation(as_sent=True))
+    for _ in range(4):
+        link.setpoints.confirm(Confirmation(as_sent=False))
+        assert link.setpoints.loss > 0.0
+        link.setpoints.confirm(Confirmation(as_sent=False, delay=0.1, late=True))
+        assert link.setpoints.loss == 0.0
+    link.setpoints.confirm(Confirmation(as_sent=False))
+    link.setpoints.confirm(Confirmation(as_sent=True))
+    assert link.setpoints.loss > 0.04

@@ -5,7 +5,7 @@ import math
 from gcs.config.vehicle_settings import NavigationSettings
 from idc_controller.rotations_float import Quaternion, Vector, half_rotation, into_body, turned
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
-from vehicle_sim.autopilot.onboard_kernels import FRESH_AT, SAMPLE_TIME, THRUST, WEIGHT
+from vehicle_sim.autopilot.onboard_kernels import FRESH_AT, REFUSED_UNTIL, SAMPLE_TIME, THRUST, WEIGHT
 from vehicle_sim.world.sensors import ACCELEROMETER_RANGE, Measurement, is_rotation
 
 _STILL = 0.3
@@ -98,7 +98,8 @@ class Navigation:
         time = sample.time if math.isfinite(sample.time) else known.time
         step = time - known.time
         has_attitude = self._is_alive("attitude", sample.attitude) and is_rotation(sample.attitude)
-        has_rates = self._has_rates = self._is_alive("rates", sample.rates)
+        refused = time < self.arrays.rate_checks.item(REFUSED_UNTIL)  # they contradict the attitude
+        has_rates = self._has_rates = self._is_alive("rates", sample.rates) and not refused
         # One measured anew is never the same, but for a vehicle at rest in a world without noise.
         has_position = _are_numbers(sample.position) and not (
             self._raw is not None and sample.position == self._raw.position and any(sample.rates)

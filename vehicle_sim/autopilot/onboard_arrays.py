@@ -1,12 +1,13 @@
 """The arrays that the kernels of the onboard loop work on."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Self
 
 import numpy as np
 
-from gcs.config.vehicle_settings import LandDetectorSettings
+from gcs.config.vehicle_settings import LandDetectorSettings, NavigationSettings
 from idc_controller.arrays import Array, Mask
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.onboard_kernels import (
@@ -14,6 +15,10 @@ from vehicle_sim.autopilot.onboard_kernels import (
     LANDING_COLUMNS,
     LAST_TIME,
     RATE,
+    RATE_CHECK_COLUMNS,
+    RATES_ERROR_MAX,
+    RATES_REFUSED,
+    RATES_WINDOW,
     STAMP_COLUMNS,
     STANDING_SINCE,
     TARGET_COLUMNS,
@@ -21,6 +26,8 @@ from vehicle_sim.autopilot.onboard_kernels import (
     VELOCITY,
 )
 from vehicle_sim.world.state_kernels import STATE_COLUMNS
+
+_NAVIGATION = NavigationSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,11 +56,27 @@ class OnboardArrays:
     """Commanded rotor speeds (N, 4) (rad/s)."""
     idle_until: Array
     """Times (N,) (s) before which the vehicles have nothing to decide; -inf: they have at the next step."""
+    rate_checks: Array
+    """Comparison of body rates with the attitude (N, 10)."""
 
     @classmethod
-    def of(cls, airframes: Sequence[Airframe], settings: LandDetectorSettings) -> Self:
-        """Return the arrays of vehicles that have not begun."""
+    def of(
+        cls,
+        airframes: Sequence[Airframe],
+        settings: LandDetectorSettings,
+        attitude_noise: float = math.inf,
+        navigation: NavigationSettings = _NAVIGATION,
+    ) -> Self:
+        """Return the arrays of vehicles that have not begun.
+
+        ``attitude_noise``: standard deviation of measured attitudes (rad), by which rates are compared with them; inf:
+        they are not.
+        """
         n = len(airframes)
+        rate_checks = np.full((n, RATE_CHECK_COLUMNS), -np.inf)
+        of_two = 2.0**0.5 * attitude_noise
+        rate_checks[:, RATES_ERROR_MAX] = max(navigation.rates_sigmas * of_two, navigation.rates_error)
+        rate_checks[:, [RATES_WINDOW, RATES_REFUSED]] = navigation.rates_window, navigation.rates_refused
         landings = np.full((n, LANDING_COLUMNS), np.nan)
         landings[:, [VELOCITY, RATE, LAST_TIME, IN_AIR]] = 0.0
         landings[:, [STANDING_SINCE, TOUCHING_SINCE]] = np.inf
@@ -70,6 +93,7 @@ class OnboardArrays:
             np.zeros((n, 3)),
             np.zeros((n, 4)),
             np.full(n, -np.inf),
+            rate_checks,
         )
 
     def of_vehicle(self, i: int) -> Self:

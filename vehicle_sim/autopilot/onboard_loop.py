@@ -47,7 +47,7 @@ def step_together(
     stage = step_while_idle(
         samples, times, now, arrays.last_samples, arrays.estimates, arrays.stamps, arrays.fresh,
         arrays.detectors, arrays.targets, arrays.learns, arrays.landings, arrays.idle_until,
-        arrays.airframes, arrays.accelerations, arrays.speeds,
+        arrays.airframes, arrays.accelerations, arrays.speeds, arrays.rate_checks,
     )  # fmt: skip
     if stage == COMMANDED:
         return []

@@ -1,0 +1,103 @@
+"""Margins of the closed loop at hover against delay and loss of set-points, on the linear model.
+
+The loop is that of the unconstrained MPC: ``u = K x_hat``. ``x_hat`` is the state at which the set-points will act,
+predicted from a state that is ``steps`` control periods older, with the set-points that were sent in the meantime: a
+loss of one of those is not known yet. A vehicle that gets no set-point flies the one before.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from idc_controller.control.mpc import ModelPredictiveController
+from idc_controller.model.linear import LinearModel
+
+_ITERATIONS, _AVERAGED = 150, 30
+
+
+class HoverLoop:
+    """The loop of one system at hover."""
+
+    def __init__(self, model: LinearModel, mpc: ModelPredictiveController) -> None:
+        self._model, self._period_us = model, round(mpc.settings.period * 1e6)
+        self._n, self._m = model.layout.size, model.layout.inputs
+        self._number_of_uavs = model.layout.number_of_uavs
+        self.A, self.B, _ = model.discretised(self._period_us)
+        self.K = np.column_stack([mpc.qp.unconstrained(e)[: self._m] for e in np.eye(self._n)])
+        """Gain (3 N, n) of the first move."""
+
+    def spectral_radius(self, delay: float) -> float:
+        """Return the spectral radius of a step whose set-points act ``delay`` (s) late, which nothing compensates.
+
+        ``delay``: below one control period.
+        """
+        n, m = self._n, self._m
+        late_us = round(delay * 1e6)
+        A_rest, B_now, _ = self._model.discretised(self._period_us - late_us)
+        B_before = A_rest @ self._model.discretised(late_us)[1] if late_us else np.zeros((n, m))
+        F = np.zeros((n + m, n + m))
+        F[:n, :n], F[:n, n:], F[n:, :n] = self.A + B_now @ self.K, B_before, self.K
+        return float(np.abs(np.linalg.eigvals(F)).max())
+
+    def delay_margin(self) -> float:
+        """Return the delay (s) that is not compensated at which the loop becomes unstable."""
+        return _crossing(self.spectral_radius, 0.0, 1e-6 * (self._period_us - 1))
+
+    def mean_square_growth(self, steps: int, loss: float) -> float:
+        """Return by which factor the mean square of the state grows in a step; below 1 the loop is stable.
+
+        Args:
+            steps: age of the newest known state when the set-points act, in control periods, at least 1.
+            loss: probability with which each set-point to each vehicle is lost, independently.
+        """
+        n, m = self._n, self._m
+        size = n + m * (steps + 1)
+        # State: x; then sent less flown of the set-points 1 .. steps periods ago; then the set-points flown last.
+        past = [slice(n + k * m, n + (k + 1) * m) for k in range(steps)]
+        flown = slice(size - m, size)
+        V = np.zeros((m, size))  # what is sent: K (x + sum of A^(k-1) B (sent - flown))
+        V[:, :n] = self.K
+        effect = self.B
+        for k in range(steps):
+            V[:, past[k]] = self.K @ effect
+            effect = self.A @ effect
+        change = V.copy()  # sent less flown before
+        change[:, flown] -= np.eye(m)
+        into = np.zeros((size, m))  # what one unit that is not flown changes
+        into[:n], into[past[0]], into[flown] = -self.B, np.eye(m), -np.eye(m)
+        mean = np.zeros((size, size))
+        mean[:n, :n], mean[flown] = self.A, V
+        mean[:n] += self.B @ V
+        for k in range(1, steps):
+            mean[past[k], past[k - 1]] = np.eye(m)
+        mean += loss * into @ change
+        of_vehicle = np.concatenate([np.repeat(np.arange(self._number_of_uavs), 2), np.arange(self._number_of_uavs)])
+        same = of_vehicle[:, None] == of_vehicle
+        P, growth = np.eye(size) / size, []
+        for _ in range(_ITERATIONS):
+            scattered = into @ ((change @ P @ change.T) * same) @ into.T
+            P = mean @ P @ mean.T + loss * (1.0 - loss) * scattered
+            growth.append(trace := float(np.trace(P)))
+            P /= trace
+        return float(np.exp(np.mean(np.log(growth[-_AVERAGED:]))))
+
+    def loss_margin(self, steps: int) -> float:
+        """Return the loss at which the mean square of the state no longer shrinks; ``steps`` as above."""
+        return _crossing(lambda loss: self.mean_square_growth(steps, loss), 0.0, 1.0)
+
+
+def expected_extra_age(loss: float, period: float) -> float:
+    """Return by how much older (s) the set-point in force is in the mean, where each is lost with probability ``loss``.
+
+    ``period`` (s) of the set-points. The number lost in a row is geometric: sum of k (1 - p) p^k = p / (1 - p).
+    """
+    return period * loss / (1.0 - loss)
+
+
+def _crossing(growth: Callable[[float], float], low: float, high: float) -> float:
+    """Return where ``growth`` exceeds 1 between ``low`` and ``high``, to a thousandth of the interval."""
+    tolerance = 1e-3 * (high - low)
+    while high - low > tolerance:
+        middle = (low + high) / 2.0
+        low, high = (low, middle) if growth(middle) > 1.0 else (middle, high)
+    return low

@@ -1,0 +1,54 @@
+"""Largest link latency by the loss of set-points, against the margins of the linear loop."""
+
+import math
+from pathlib import Path
+
+import pytest
+from link_margin_page import hover_loop, margins
+from page_tables import markdown_table
+
+from gcs.config import SystemConfig
+from gcs.flight.link_limit import latency_limit
+from idc_controller.control.delay_margin import expected_extra_age
+
+SYSTEM = SystemConfig()
+PERIOD, SETTINGS = 1.0 / SYSTEM.rates.control, SYSTEM.flight.failsafe
+
+
+@pytest.fixture(scope="module")
+def loop():
+    return hover_loop()
+
+
+def steps(latency):
+    """Return the age of the newest known state, in control periods, when set-points act after ``latency`` (s)."""
+    return math.ceil((2.0 * latency + 1.0 / SYSTEM.rates.telemetry) / PERIOD - 1e-9)
+
+
+def test_latency_limit_falls_with_the_loss_from_the_one_without_to_the_one_of_any_loss():
+    limits = [latency_limit(SETTINGS, loss, PERIOD) for loss in (0.0, 0.1, 0.15, 0.18, 0.3, 1.0)]
+    assert limits[:2] == [SETTINGS.latency_limit] * 2
+    assert limits[1] > limits[2] > limits[3] > limits[4]
+    assert limits[4:] == [SETTINGS.latency_any_loss] * 2
+
+
+def test_ages_that_losses_may_add_are_half_of_what_the_loop_bears(loop):
+    for latency, age in zip((SETTINGS.latency_limit, SETTINGS.latency_any_loss), SETTINGS.loss_age, strict=True):
+        margin = expected_extra_age(loop.loss_margin(steps(latency)), PERIOD)
+        assert age / margin == pytest.approx(0.5, abs=0.05)
+
+
+def test_growth_without_loss_is_that_of_the_loop_whatever_the_delay_that_is_compensated(loop):
+    assert loop.spectral_radius(0.0) < 1.0
+    for age in (1, 4):
+        assert loop.mean_square_growth(age, 0.0) == pytest.approx(loop.spectral_radius(0.0) ** 2, rel=0.02)
+
+
+def test_loop_whose_delay_is_not_compensated_is_unstable_beyond_its_margin(loop):
+    margin = loop.delay_margin()
+    assert loop.spectral_radius(margin - 0.002) < 1.0 < loop.spectral_radius(margin + 0.002)
+
+
+def test_table_of_the_page_is_the_computed_one():
+    page = (Path(__file__).parents[2] / "docs" / "link-margin.md").read_text(encoding="utf-8")
+    assert markdown_table(margins()) in page, "run tests/pages/link_margin_page.py docs/link-margin.md --margins"
