@@ -154,8 +154,12 @@ class IntegratedDecisionController:
         layout = self.layout
         of_state, of_reference = state_in_force_components(np.stack([x, reference]), layout, self._hover)
         error = np.asarray(of_state - of_reference)
-        error[layout.r_0] = limited(error[layout.r_0], self.settings.position_error_limit)
-        error[layout.v_0] = limited(error[layout.v_0], self.settings.velocity_error_limit)
+        s = self.settings
+        position_limit, velocity_limit = s.position_error_limit, s.velocity_error_limit
+        if self.load.wind.air is not None:
+            position_limit, velocity_limit = s.position_error_limit_in_wind, s.velocity_error_limit_in_wind
+        error[layout.r_0] = limited(error[layout.r_0], position_limit)
+        error[layout.v_0] = limited(error[layout.v_0], velocity_limit)
         return error
 
 
