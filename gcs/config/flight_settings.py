@@ -37,6 +37,7 @@ class FailsafeSettings(SettingsTable):
     )
     deviation_time: float = 0.2  # s; for which they must be that far off
     confirming_deviation: float = 0.4  # m; of one vehicle, which confirms that the payload's unit reports it overturned
+    wind_limit: float = setting(4.3, "m/s", "estimated wind above which the flight is ended", gt=0.0)
     attitude_error: float = (
         0.07  # rad; of a vehicle on board, by the force that it pulls aside with: ten times the noise
     )
@@ -87,7 +88,9 @@ class TakeoffLandingSettings(SettingsTable):
     spool_up_time: float = 2.5  # s; from idle to hover thrust
     spool_down_time: float = 2.0  # s; from hover thrust to idle
     standing_share: Share = 0.8  # of the hover thrust, with the payload on the ground and the links taut
+    leaning_share: Share = 0.6  # the same while links lean: with more of it a payload slides in wind
     upright_lean: float = 0.05  # sine of a link's tilt that stays upright without thrust
+    lean_time: float = 1.0  # s; a link that moves on at its rate must be upright for so long, too
     upright_timeout: float = 5.0  # s; for links to come upright before the thrust fades
     touch_depth: float = 0.06  # m; of the reference below a payload that is on the ground
     touch_speed: float = 0.05  # m/s; vertical, below which it is at rest

@@ -268,6 +268,13 @@ def _impact(system: System, moment: Moment) -> Trigger | None:
     return Trigger(text, vehicles, source="team" if vehicles else "payload")
 
 
+def _wind_exceeded(system: System, moment: Moment) -> Trigger | None:
+    if moment.estimate is None or (air := system.guidance.air) is None:
+        return None
+    speed, limit = math.hypot(*air.wind[:2]), system.settings.wind_limit
+    return Trigger(f"the wind is {speed:.1f} m/s by its drag (limit {limit:g} m/s)") if speed > limit else None
+
+
 def _climb_stalled(system: System, moment: Moment) -> Trigger | None:
     if moment.phase is not Phase.CLIMB or moment.estimate is None or system.payload.is_clear(moment.estimate):
         return None
@@ -402,6 +409,8 @@ class Failsafe(AlarmCode):
         "an accelerometer has exceeded its range since the payload is clear of the ground")
     ATTITUDE_WRONG = (Check.ESTIMATE, attitude_wrong, Reaction.BRAKE_AND_LAND, "check its navigation",
         "a vehicle pulls aside, as if its attitude were wrong on board by more than {attitude_error} rad")
+    WIND_EXCEEDED = (Check.ESTIMATE, _wind_exceeded, Reaction.AUTONOMOUS_LANDING, "wait for less wind",
+        "the wind, as estimated by its drag, is more than {wind_limit:g} m/s")
     CLIMB_STALLED = (Check.ESTIMATE, _climb_stalled, Reaction.BRAKE_AND_LAND, "check the load, and what holds it",
         "the payload is still on the ground, below its plan by more than the margin and the bound on its deviation")
     DESCENT_STALLED = (Check.ESTIMATE, _descent_stalled, Reaction.AUTONOMOUS_LANDING, "check wind, load and positions",

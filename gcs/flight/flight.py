@@ -269,7 +269,8 @@ class Flight:
             return min((time - self.takeoff_time) / self._settings.takeoff_landing.spool_up_time, 1.0)
         if self._touchdown is None:
             return 1.0
-        lean = float(np.abs(estimate.x[self.control.controller.layout.s]).max())
+        layout, ahead = self.control.controller.layout, self._settings.takeoff_landing.lean_time
+        lean = float(max(np.abs(estimate.x[layout.s]).max(), ahead * np.abs(estimate.x[layout.s_dot]).max()))
         return self._touchdown.share(time, lean)
 
     def _progress(self, time: float) -> tuple[float, Trajectory]:

@@ -118,16 +118,13 @@ class IntegratedDecisionController:
         # the middle of it leaves the least error.
         flat = reference.at(estimate.time + self._times)
         stages = flat.part(slice(0, -1))
-        hover, s = self._hover, self.settings
-        error = tracking_error(
-            estimate.x, stages.x[0], hover, self.layout.n.start, s.position_error_limit, s.velocity_error_limit
-        )
+        error = tracking_error(estimate.x, stages.x[0], self._hover, self.layout.n.start, *self._error_limits)
         ready = self._stopwatch()
         if not on_ground:
             self._ground_controller.release()
         output = (self._ground_controller if on_ground else self.tracker).track(error, stages)
         tracked = self._stopwatch()
-        u = setpoints(output.delta_u, flat.u[-1], hover, s.least_lift)
+        u = setpoints(output.delta_u, flat.u[-1], self._hover, self.settings.least_lift)
         if not on_ground:
             u = self.safety.correct(estimate.time, u, estimate)
         return Decision(
@@ -145,6 +142,14 @@ class IntegratedDecisionController:
             sight=self.guidance.sight,
             detours=self.guidance.detours,
         )
+
+    @property
+    def _error_limits(self) -> tuple[float, float]:
+        """Position (m) and velocity error (m/s) of the payload that are answered at most."""
+        s = self.settings
+        if self.load.wind.air is None:
+            return s.position_error_limit, s.velocity_error_limit
+        return s.position_error_limit_in_wind, s.velocity_error_limit_in_wind
 
 
 def plan(

@@ -107,6 +107,9 @@ class ControllerSettings(SettingsTable):
     force_limit: float = 0.4
     # the same where wind explains the force: of drag, and of drag and disturbance force together
     drag_limit: float = 0.65
+    # m, m/s; the same in place of the two below where wind explains the force: it has displaced the payload
+    position_error_limit_in_wind: float = 1.0
+    velocity_error_limit_in_wind: float = 1.0
     upright_time_constant: float = 0.5  # s; with which links come upright over a payload on the ground
     position_error_limit: float = 0.3  # m; a position error of the payload is answered as if it were at most this
     velocity_error_limit: float = 0.6  # m/s; the same of its velocity

@@ -24,6 +24,8 @@ class Guidance:
     """Limit of the progress rate by sight."""
     detours = 0
     """Detours taken so far."""
+    air: Air | None = None
+    """Motion and drag of the air, as estimated last; None: no wind."""
 
     def reference(self, time: float, mission: Trajectory) -> ScaledReference:
         """Return the reference from ``time`` (s) on; the same object as before as long as nothing changes."""
@@ -111,7 +113,7 @@ class AdaptiveGuidance(Guidance):
         missed: float = 0.0,
     ) -> None:
         """See :meth:`Guidance.observe`."""
-        self._tracked = tracked
+        self._tracked, self.air = tracked, air
         if self._current is None or self._observed is self._current:
             return
         self._observed, self._deflected = self._current, deviation is not None

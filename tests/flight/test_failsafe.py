@@ -23,6 +23,7 @@ from gcs.flight.phase import Phase
 from gcs.flight.plan_monitor import ImpactMonitor, PlanMonitor
 from gcs.mavlink.vehicle_link import AddressConflict
 from idc_controller.geometry.shapes import Sphere
+from idc_controller.model.drag import Air
 from idc_controller.perception.standing_obstacles import MapObstacle, StandingObstacles
 from idc_controller.trajectory.trajectory import RestTrajectory
 
@@ -260,3 +261,12 @@ def test_touch_down_is_no_impact():
     _, monitor = impact(2.0, [0, 0, 0, 0])
     assert impact(0.01, [2, 2, 2, 2], payload=5, monitor=monitor)[0] is None
     assert impact(2.0, [2, 2, 2, 2], payload=5, monitor=monitor)[0] is None  # lifted again
+
+
+@pytest.mark.parametrize(("speed", "ends"), [(None, False), (-0.1, False), (0.1, True)])
+def test_wind_beyond_its_limit_ends_the_flight(speed, ends):
+    limit = DEFAULTS.failsafe.wind_limit
+    air = None if speed is None else Air((limit + speed) * np.array([-0.6, 0.8, 0.0]), np.zeros(3), 0.0)
+    system = SimpleNamespace(guidance=SimpleNamespace(air=air), settings=DEFAULTS.failsafe)
+    found = Failsafe.WIND_EXCEEDED.condition(system, Moment(Phase.FLY, 100.0, 100.0, estimate=object()))
+    assert (found is not None) == ends

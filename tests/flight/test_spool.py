@@ -21,13 +21,13 @@ def test_spool_down_begins_at_once_with_upright_links():
         assert spool.share(10.0 + elapsed, 0.0) == pytest.approx(max(1.0 - elapsed / S.spool_down_time, 0.0), abs=0.03)
 
 
-def test_spool_down_waits_for_leaning_links():
+def test_spool_down_waits_for_leaning_links_with_less_thrust():
     spool = touchdown()
-    for k in range(30):
-        assert spool.share(10.0 + 0.1 * k, 2.0 * S.upright_lean) >= S.standing_share
-    assert spool.share(13.0, 0.5 * S.upright_lean) == pytest.approx(S.standing_share)
-    assert spool.share(13.0 + 0.5 * S.standing_share * S.spool_down_time, 2.0 * S.upright_lean) == pytest.approx(
-        0.5 * S.standing_share
+    shares = [spool.share(10.0 + 0.1 * k, 2.0 * S.upright_lean) for k in range(30)]
+    assert min(shares) == shares[-1] == S.leaning_share < S.standing_share
+    assert spool.share(13.0, 0.5 * S.upright_lean) == pytest.approx(S.leaning_share)
+    assert spool.share(13.0 + 0.5 * S.leaning_share * S.spool_down_time, 2.0 * S.upright_lean) == pytest.approx(
+        0.5 * S.leaning_share
     )
 
 
