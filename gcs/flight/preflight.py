@@ -93,9 +93,13 @@ class Preflight:
 
     @property
     def wrong_clock(self) -> tuple[VehicleLink, float] | None:
-        """The first vehicle whose clock does not go as the ground's, with its seconds a second; None: all do."""
+        """The first vehicle whose clock does not go as the ground's, with its seconds a second; None: all do.
+
+        Stamps that wait in a queue, longer and longer, say nothing of a clock.
+        """
         for link, first in zip(self._team.links, self._stamps, strict=False):
-            if first is None or (newest := link.clock.newest) is None or newest[1] <= first[1]:
+            newest = link.clock.newest
+            if first is None or newest is None or newest[1] <= first[1] or self.queues(link):
                 continue
             rate = (newest[0] - first[0]) / (newest[1] - first[1])
             if abs(rate - 1.0) > _RATE_ERROR:
