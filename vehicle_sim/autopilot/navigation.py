@@ -86,6 +86,7 @@ class Navigation:
             self._known = self._raw = self.estimate
             self._observed = None
             self._repeated["attitude"] = self._repeated["rates"] = 0
+            self._still = 0.0
         self._updated_at = now
         if sample.is_usable():
             self._usable_at = now
@@ -104,6 +105,8 @@ class Navigation:
         has_position = _are_numbers(sample.position) and not (
             self._raw is not None and sample.position == self._raw.position and any(sample.rates)
         )
+        if has_position:
+            self._still = 0.0
         self._raw, raw = sample, self._raw
         if has_rates and has_attitude and has_position and sample.is_usable():
             self._known, self._observed = sample, None
