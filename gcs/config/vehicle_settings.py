@@ -34,7 +34,7 @@ class VehicleFailsafeSettings(SettingsTable):
     stop_plan_age: float = 2.0  # s; since its start in which the ground's stop plan may be begun
     # m; from the stop plan within which it is followed: farther away it does not fit the vehicle
     stop_plan_distance: float = 2.0
-    # m; from the vehicle's own way within which a stop plan begins, or it is another's: neighbours are farther apart
+    # m; from the vehicle's path within which a stop plan begins, or it is another's: neighbours are farther apart
     stop_plan_offset: float = 0.5
 
 

@@ -391,7 +391,7 @@ class Failsafe(AlarmCode):
         "no message of any vehicle for {data_link_timeout:g} s, once the descent has been commanded")
     CONTROL_OVERRUN = (Check.STEP, _control_overrun, Reaction.AUTONOMOUS_LANDING,
         "end other programs, or use a faster machine; of a simulation lower `--speed`",
-        "control steps are usually made {overrun_limit:g} control periods apart, or more")
+        "from spool-up to touchdown control steps are usually more than {overrun_limit:g} control periods apart")
     OBSTACLE_SENSING_LOST = (Check.IN_AIR, _obstacle_sensing_lost, Reaction.BRAKE_AND_LAND, "check the range sensors",
         "no vehicle detects obstacles, or what all of them detect is impossible")
     MAP_OFFSET = (Check.IN_AIR, _map_offset, Reaction.BRAKE_AND_LAND, "check positions and range sensors",

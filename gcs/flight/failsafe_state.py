@@ -49,7 +49,7 @@ class FailsafeState:
         return min(held, key=lambda each: (-each[0].reaction, len(each[1].vehicles), each[1].vehicles))
 
     def raise_failsafe(self, time: float, phase: Phase, failsafe: Failsafe, trigger: Trigger) -> Reaction:
-        """Record it at ``time`` (s); return its reaction, NONE if one as severe is under way."""
+        """Record it at ``time`` (s); return its reaction, NONE if one at least as severe is under way."""
         source = trigger.source
         if len(trigger.vehicles) == 1:
             source = f"vehicle {self.system.team.links[trigger.vehicles[0]].system_id}"

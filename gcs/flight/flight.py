@@ -113,7 +113,7 @@ class Flight:
     # Failsafes
 
     def raise_failsafe(self, time: float, failsafe: Failsafe, trigger: Trigger) -> None:
-        """React to a failsafe, unless a more severe reaction is under way."""
+        """React to a failsafe, unless a reaction at least as severe is under way."""
         if self.ended and failsafe.reaction is not Reaction.END_CONTROL:
             return
         reaction = self.failsafes.raise_failsafe(time, self.phase, failsafe, trigger)

@@ -17,7 +17,9 @@ def latency_limit(settings: FailsafeSettings, loss: float, period: float) -> flo
     """
     age, (at_limit, at_any) = expected_extra_age(min(loss, 0.99), period), settings.loss_age
     share = min(max((at_any - age) / (at_any - at_limit), 0.0), 1.0)
-    return settings.latency_any_loss + share * (settings.latency_limit - settings.latency_any_loss)
+    most = settings.latency_limit
+    least = min(settings.latency_any_loss, most)
+    return least + share * (most - least)
 
 
 def latency_exceeded(

@@ -27,7 +27,7 @@ class GroundController:
         """``period`` is the control period (s)."""
         self.layout = model.layout
         self._lean = settings.lean_deadband
-        self._step = settings.lean_gain * period
+        self._step, self._held_max = settings.lean_gain * period, settings.lean_tilt_max
         self._held = np.zeros((model.layout.number_of_uavs, 2))
         """Tilt set-points (N, 2) against what makes links lean."""
         self.gains = np.array([pendulum_gain(model, i, period, settings) for i in range(model.layout.number_of_uavs)])
@@ -38,7 +38,8 @@ class GroundController:
         parts = (layout.s, layout.s_dot, layout.n, layout.n_dot, layout.n_acc)
         states = np.stack([error[part].reshape(-1, 2) for part in parts], axis=1)  # (N, 5, 2)
         lean = states[:, 0]
-        self._held += self._step * (lean - np.clip(lean, -self._lean, self._lean))
+        held = self._held + self._step * (lean - np.clip(lean, -self._lean, self._lean))
+        self._held = np.clip(held, -self._held_max, self._held_max)
         tilt = self._held - np.einsum("ik,ikc->ic", self.gains, states)
         return TrackingOutput(np.concatenate([tilt.ravel(), np.zeros(layout.number_of_uavs)]))
 

@@ -27,7 +27,7 @@ class TrackingOutput(NamedTuple):
     """Set-points of a tracker, and how they came about."""
 
     delta_u: Array
-    """Set-points less the reference's, in force components (3 N,): :mod:`idc_controller.control.force_components`."""
+    """Set-points less the reference's, in force components (3 N,): :mod:`idc_controller.control.force_kernels`."""
     iterations: int = 0
     """Solver iterations; 0 when no constraint was active."""
     infeasible: bool = False

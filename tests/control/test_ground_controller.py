@@ -6,6 +6,7 @@ from scipy.linalg import expm
 
 from gcs.config import read_system
 from idc_controller.control.ground_controller import GroundController, pendulum_dynamics
+from idc_controller.control.settings import GroundControlSettings
 from idc_controller.model.linear import LinearModel
 
 PERIOD = 0.05
@@ -50,3 +51,12 @@ def test_uav_whose_attitude_is_wrong_stays_upright_over_a_payload_on_the_ground(
     assert max(leans) < 0.25 and max(leans[-40:]) < 0.04
     controller.release()
     assert np.all(controller.track(np.zeros(layout.size), None).delta_u == 0.0)
+
+
+def test_tilt_against_a_link_that_cannot_come_upright_does_not_grow_without_end():
+    controller, layout = GroundController(MODEL, PERIOD), MODEL.layout
+    error = np.zeros(layout.size)
+    error[layout.s.start] = 0.3
+    tilts = [controller.track(error, None).delta_u[0] for _ in range(400)]
+    assert tilts[20] - tilts[0] > 0.05
+    assert tilts[-1] == tilts[200] == pytest.approx(GroundControlSettings().lean_tilt_max - 0.3 * GAINS[0, 0])

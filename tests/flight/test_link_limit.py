@@ -1,6 +1,7 @@
 """Largest link latency by the loss of set-points, against the margins of the linear loop."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -30,6 +31,12 @@ def test_latency_limit_falls_with_the_loss_from_the_one_without_to_the_one_of_an
     assert limits[:2] == [SETTINGS.latency_limit] * 2
     assert limits[1] > limits[2] > limits[3] > limits[4]
     assert limits[4:] == [SETTINGS.latency_any_loss] * 2
+
+
+def test_latency_limit_that_is_set_below_that_of_any_loss_does_not_rise_with_the_loss():
+    strict = replace(SETTINGS, latency_limit=0.6 * SETTINGS.latency_any_loss)
+    for loss in (0.0, 0.15, 1.0):
+        assert latency_limit(strict, loss, PERIOD) == pytest.approx(strict.latency_limit)
 
 
 def test_ages_that_losses_may_add_are_half_of_what_the_loop_bears(loop):

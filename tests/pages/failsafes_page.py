@@ -31,7 +31,8 @@ This page is made from the code by `make docs`. Thresholds are those of the defa
 
 Every condition that ends or changes a flight is a member of `Failsafe` in `gcs/flight/failsafe.py`. Of several
 conditions the one with the most severe reaction counts; a reaction that is under way gives way only to a more severe
-one. Before arming every reaction but `END_CONTROL` is `REFUSE`, and until the climb it is `DISARM`.
+one. Before arming every reaction but `END_CONTROL` is `REFUSE`; until the climb, and while the vehicles are disarmed,
+it is `DISARM`.
 
 | reaction, in ascending severity | what is done |
 |---|---|

@@ -215,6 +215,23 @@ def test_vehicle_without_position_that_nothing_accelerates_stands_if_its_thrust_
     assert (found[-1][0].velocity == (0.0, 0.0, 0.0)) is stands
 
 
+def test_time_that_a_vehicle_has_stood_begins_anew_after_its_velocity_was_measured():
+    rng, navigation, time = np.random.default_rng(5), navigation_alone(), 0.0
+    navigation.arrays.targets[0, THRUST] = 0.9 * AIRFRAME.mass * AIRFRAME.g
+    navigation.specific_force = (0.0, 0.0, -AIRFRAME.g)
+    velocities = []
+    for sinking, duration in ((0.0, 0.02), (0.0, 1.0), (0.4, 0.1), (0.4, 0.1)):
+        sample = Measurement(time, (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, sinking))
+        for _ in range(round(duration / STEP)):
+            time += STEP
+            sample = sample._replace(time=time, rates=tuple(rng.normal(0.0, 0.005, 3)))
+            if len(velocities) % 2 == 0:  # else the position is stuck
+                sample = sample._replace(position=tuple(rng.normal(0.0, 0.02, 3)))
+            velocity = navigation.update(sample, (0.0, 0.0, 0.0), time).velocity
+        velocities.append(velocity[2])
+    assert velocities == pytest.approx([0.0, 0.0, 0.4, 0.4], abs=1e-3)
+
+
 def test_impact_ends_the_velocity_of_a_vehicle_without_position():
     def impact(time):
         return (0.0, 0.0, -100.0) if 1.0 <= time < 1.0 + 0.9 * STEP else (0.0, 0.0, 0.0)

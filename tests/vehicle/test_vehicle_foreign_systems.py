@@ -26,6 +26,7 @@ from vehicle_bench import (
 from gcs.config.vehicle_settings import VehicleFailsafeSettings, VehicleLinkSettings
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
+from vehicle_sim.world.sensors import Measurement
 
 GROUND_HEARTBEAT = mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, 8, 0, 0, 4, 3)
 
@@ -57,6 +58,16 @@ def test_silence_of_the_ground_lets_no_other_stop_the_rotors_in_the_air(flying: 
     assert flying.vehicle.autopilot.armed
     assert flying.result(command(400, 0, px4.FORCE_ARM_DISARM)) == ACCEPTED
     assert not flying.vehicle.autopilot.armed
+
+
+def test_ground_whose_offboard_is_denied_in_the_air_gets_no_control(flying: Bench) -> None:
+    flying.streaming = {(STRANGER, 42): attitude_target(thrust=HOVER)}
+    flying.body.measure = lambda: Measurement(flying.now, *((math.nan,) * n for n in (4, 3, 3, 3)))
+    flying.run(1.5)
+    assert flying.result(OFFBOARD, STRANGER, 42) == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
+    assert "no navigation data" in flying.got("STATUSTEXT", STRANGER)[-1].text
+    assert flying.result(command(400, 0, px4.FORCE_ARM_DISARM), STRANGER, 42) == DENIED
+    assert flying.vehicle.autopilot.armed
 
 
 def test_foreign_system_at_ground_address_cannot_stop_telemetry(flying: Bench) -> None:

@@ -3,7 +3,8 @@
 import math
 
 from gcs.config.vehicle_settings import NavigationSettings
-from idc_controller.rotations_float import Quaternion, Vector, half_rotation, into_body, turned
+from idc_controller.rotations_float import Quaternion, Vector, half_rotation, turned
+from vehicle_sim.autopilot.inertial import accelerated
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.autopilot.onboard_kernels import FRESH_AT, REFUSED_UNTIL, SAMPLE_TIME, THRUST, WEIGHT
 from vehicle_sim.world.sensors import ACCELEROMETER_RANGE, Measurement, is_rotation
@@ -86,6 +87,7 @@ class Navigation:
             self._known = self._raw = self.estimate
             self._observed = None
             self._repeated["attitude"] = self._repeated["rates"] = 0
+            self._still = 0.0
         self._updated_at = now
         if sample.is_usable():
             self._usable_at = now
@@ -104,6 +106,8 @@ class Navigation:
         has_position = _are_numbers(sample.position) and not (
             self._raw is not None and sample.position == self._raw.position and any(sample.rates)
         )
+        if has_position:
+            self._still = 0.0
         self._raw, raw = sample, self._raw
         if has_rates and has_attitude and has_position and sample.is_usable():
             self._known, self._observed = sample, None
@@ -140,10 +144,7 @@ class Navigation:
         self._still = self._still + step if carried and abs(size - self._g) < _STILL else 0.0
         if size > ACCELEROMETER_RANGE or self._still > _STILL_TIME:
             return 0.0, 0.0, 0.0
-        w, x, y, z = attitude
-        a_x, a_y, a_z = into_body((w, -x, -y, -z), self.specific_force)
-        v_x, v_y, v_z = velocity
-        return v_x + step * a_x, v_y + step * a_y, v_z + step * (a_z + self._g)
+        return accelerated(velocity, attitude, self.specific_force, self._g, step)
 
     def _is_alive(self, channel: str, value: Quaternion | Vector) -> bool:
         # A vehicle at rest in a world without noise has rates of exactly zero.

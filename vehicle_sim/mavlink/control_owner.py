@@ -5,7 +5,7 @@ from collections import Counter, deque
 
 from gcs.config.vehicle_settings import VehicleLinkSettings
 from gcs.mavlink.services.aircraft import Sender
-from gcs.mavlink.services.answer import Answer, rejected_for_now
+from gcs.mavlink.services.answer import ACCEPTED, Answer, rejected_for_now
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.setpoint_stream import Setpoint
 
@@ -118,8 +118,8 @@ class ControlOwner:
                 why = "no set-points from you"
             return rejected_for_now(f"OFFBOARD denied: {why}")
         answer = self._autopilot.enter_offboard(stream.last, stream.time, now)
-        self._owner = sender
-        self._is_handed_over = True
+        if answer == ACCEPTED:
+            self._owner, self._is_handed_over = sender, True
         return answer
 
     def is_new_plan(self, session: int, number: int) -> bool:

@@ -3,7 +3,8 @@
 import math
 
 from gcs.config.vehicle_settings import FreeFlightSettings
-from idc_controller.rotations_float import Vector, into_body
+from idc_controller.rotations_float import Vector
+from vehicle_sim.autopilot.inertial import accelerated
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.world.sensors import Measurement
 
@@ -46,15 +47,12 @@ class DeadReckoning:
             self._position, self._velocity = (place[0], place[1], place[2]), (velocity[0], velocity[1], velocity[2])
             self.is_lost = False
             return
-        v_x, v_y, v_z = self._velocity
         if velocity != self._measured_velocity:  # that is measured still
             self._velocity = velocity[0], velocity[1], velocity[2]
         elif is_clipped:
             self._velocity = 0.0, 0.0, 0.0
         else:
-            w, x, y, z = attitude
-            a_x, a_y, a_z = into_body((w, -x, -y, -z), force)
-            self._velocity = v_x + a_x * step, v_y + a_y * step, v_z + (a_z + self._g) * step
+            self._velocity = accelerated(self._velocity, attitude, force, self._g, step)
         x, y, z = self._position
         v_x, v_y, v_z = self._velocity
         self._position = x + v_x * step, y + v_y * step, z + v_z * step
