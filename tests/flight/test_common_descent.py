@@ -1,7 +1,7 @@
 """All vehicles descend together, whatever is lost first and second, and whenever: ground and vehicles, without physics.
 
-The ground's stop plans, what it infers of a lost vehicle and the vehicles' autopilots are real; links of one step each
-way, and vehicles that hover in their places, are not.
+The ground's choice of stop plans and the vehicles' autopilots are real; links of one step each way, and vehicles that
+hover in their places, are not.
 """
 
 from dataclasses import replace
