@@ -31,7 +31,7 @@ class VehicleFailsafeSettings(SettingsTable):
     link_loss: int = setting(
         10, "s", "COM_DL_LOSS_T: without a heartbeat of the ground until a holding vehicle descends", ge=5, le=300
     )
-    stop_plan_age: float = 2.0  # s; since its start in which the ground's stop plan may be begun
+    stop_plan_age: float = 0.62  # s; of the ground's stop plan when it is begun, beyond what set-point loss explains
     # m; from the stop plan within which it is followed: farther away it does not fit the vehicle
     stop_plan_distance: float = 2.0
     # m; from the vehicle's path within which a stop plan begins, or it is another's: neighbours are farther apart

@@ -7,6 +7,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 from gcs.flight.control_loop import Hold
 from gcs.mavlink import px4
 from gcs.mavlink.requests import Command, CommandState
+from gcs.mavlink.stop_plan import LAG_MAX
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.parameters import SystemParameters
 
@@ -60,7 +61,7 @@ class Team:
     def hold(self) -> Hold:
         """The hold without set-points, from the last ones on."""
         loss = max(link.status.parameters[px4.PARAM_SETPOINT_LOSS] for link in self.links)
-        return Hold(loss + self.land_delay, 2.0 * loss)
+        return Hold(loss + self.land_delay, LAG_MAX * loss)
 
     def reachable_are_disarmed(self, now: float, timeout: float) -> bool:
         """Return whether every vehicle with telemetry newer than ``timeout`` (s), and at least one, is disarmed."""

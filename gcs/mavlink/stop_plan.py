@@ -14,6 +14,10 @@ PAYLOAD_TYPE = 0xC11F
 """Of TUNNEL; those from 32768 on are private."""
 POINTS = 5
 """Control points of a quartic."""
+LAG_MAX = 2.0
+"""Times of set-point loss (COM_OF_LOSS_T) by which a stop plan may begin earlier than the set-points that it goes out
+with: by then the loss of a vehicle that confirms none has been detected.
+"""
 
 _TUNNEL = LAYOUTS[mavlink.MAVLINK_MSG_ID_TUNNEL]
 _HEAD = struct.Struct("<H3B")

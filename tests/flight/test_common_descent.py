@@ -1,9 +1,10 @@
 """All vehicles descend together, whatever is lost first and second, and whenever: ground and vehicles, without physics.
 
-The ground's stop plans, what it infers of a lost vehicle and the vehicles' autopilots are real; links of one step each
-way, and vehicles that hover in their places, are not.
+The ground's choice of stop plans and the vehicles' autopilots are real; links of one step each way, and vehicles that
+hover in their places, are not.
 """
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,10 +13,12 @@ from flying import AIRFRAME
 from onboard import step_alone
 
 from gcs.config.flight_settings import DEFAULTS
+from gcs.config.vehicle_settings import AutopilotSettings, VehicleFailsafeSettings
 from gcs.flight import control_loop
 from gcs.flight.compute_times import ComputeTimes
 from gcs.flight.control_loop import ControlLoop, Hold
 from gcs.mavlink import px4
+from gcs.mavlink.stop_plan import LAG_MAX
 from idc_controller.estimation.setpoint_history import SetpointHistory
 from idc_controller.trajectory.stop_plan import StopPlan as TeamPlan
 from vehicle_sim.autopilot.autopilot import Autopilot
@@ -35,16 +38,21 @@ COMMANDS, TELEMETRY, BOTH, GROUND = "commands", "telemetry", "both", "ground"
 
 
 class Team:
-    """A ground and its vehicles; ``losses``: (what, of which vehicle, from which step on)."""
+    """A ground and its vehicles; ``losses``: (what, of which vehicle, from which step on).
 
-    def __init__(self, losses):
+    ``loss``: COM_OF_LOSS_T (s).
+    """
+
+    def __init__(self, losses, loss=LOSS):
+        self.loss = loss
         self.losses, self.step, self.flying, self.landing_at = losses, 0, True, None
         self.down, self.up = [], []
         self.heard, self.offboard = [0] * N, [True] * N
         self.descends = [None] * N
         estimator = SimpleNamespace(setpoints=SetpointHistory(N))
         self.ground = ControlLoop(estimator, SimpleNamespace(parameters=None), ComputeTimes(lambda: 0.0))
-        self.pilots = [Autopilot(AIRFRAME, vehicle_parameters(AIRFRAME, 1 + i, 250)) for i in range(N)]
+        settings = replace(AutopilotSettings(), failsafe=replace(VehicleFailsafeSettings(), setpoint_loss=loss))
+        self.pilots = [Autopilot(AIRFRAME, vehicle_parameters(AIRFRAME, 1 + i, 250, settings)) for i in range(N)]
         for i, pilot in enumerate(self.pilots):
             self.sense(i)
             pilot.enter_offboard(self.setpoint(0), 0.0, 0.0)
@@ -81,7 +89,7 @@ class Team:
                 reported = [0.001 * flown, 0.0, 10.0]
                 self.ground.estimator.setpoints.confirm(i, self.now - STEP, self.now, reported, 0.0)
         silent = [(self.step - heard) * STEP for heard in self.heard]
-        if self.flying and (max(silent) > LOSS or not all(self.offboard)):
+        if self.flying and (max(silent) > self.loss or not all(self.offboard)):
             self.flying, self.landing_at = False, self.step + round(LAND_DELAY / STEP)
             self.send("plan", self.ground.stop_plan)
             self.send("mode", px4.MODE_HOLD)
@@ -90,7 +98,8 @@ class Team:
             record = SimpleNamespace(
                 decision=SimpleNamespace(u=u, flat=None), estimate=SimpleNamespace(x=None, time=self.now)
             )
-            self.ground.send(record, self.now + LINK * STEP, np.full(N, self.now), Hold(LOSS + LAND_DELAY, 2.0 * LOSS))
+            hold = Hold(self.loss + LAND_DELAY, LAG_MAX * self.loss)
+            self.ground.send(record, self.now + LINK * STEP, np.full(N, self.now), hold)
             self.send("plan", self.ground.stop_plan)
             self.send("setpoint", self.step)
         elif self.step == self.landing_at:
@@ -150,3 +159,11 @@ def test_all_vehicles_descend_together_whatever_is_lost_first_and_second(first, 
 def test_all_vehicles_descend_together_after_the_ground_alone_is_lost():
     times = Team([(GROUND, None, FIRST)]).run()
     assert max(times) - min(times) <= 1e-9
+
+
+@pytest.mark.parametrize("loss", [0.2, LOSS, 1.5, 5.0])
+def test_vehicles_follow_a_stop_plan_that_waited_for_a_lost_vehicle_whatever_the_time_of_setpoint_loss(loss):
+    team = Team([(TELEMETRY, 1, FIRST), (GROUND, None, FIRST + round(0.95 * loss / STEP))], loss)
+    times = team.run()
+    assert None not in times and max(times) - min(times) <= BOUND + 1e-9, times
+    assert all(pilot.state.hold.plan.is_common for pilot in team.pilots)

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from gcs.config.vehicle_settings import AutopilotSettings
 from gcs.mavlink import px4
 from gcs.mavlink.services.parameter_table import ParameterTable
+from gcs.mavlink.stop_plan import LAG_MAX
 from idc_controller.rotations_float import Vector, euler_of
 from vehicle_sim.autopilot.actuation import Actuation
 from vehicle_sim.autopilot.airframe import Airframe
@@ -180,9 +181,11 @@ class FlightState:
 
     def _recent_stop_plan(self, now: float) -> StopPlan | None:
         sent = self.stop_plan
-        if sent is None or not -self.setpoint_loss_time <= now - sent.start <= self.settings.failsafe.stop_plan_age:
+        if sent is None:
             return None
-        return sent
+        loss = self.setpoint_loss_time
+        oldest = (1.0 + LAG_MAX) * loss + self.settings.failsafe.stop_plan_age
+        return sent if -loss <= now - sent.start <= oldest else None
 
     def _plan_of_ground(
         self, sent: StopPlan | None, measured: Measurement, now: float, descent: tuple[float, float, float, bool]
