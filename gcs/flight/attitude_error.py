@@ -18,7 +18,7 @@ def attitude_wrong(system: System, moment: Moment) -> Trigger | None:
     errors = own / system.team.parameters.hover_thrust
     worst = int(np.argmax(errors))
     error, limit = float(errors[worst]), system.settings.attitude_error
-    if error <= limit:
+    if not error > limit:  # a force that is not a number is another failsafe's
         return None
     name = system.team.links[worst].system_id
     return Trigger(f"the thrust of vehicle {name} is {error:.2f} rad off its attitude (limit {limit:g} rad)", (worst,))
