@@ -37,7 +37,9 @@ class FailsafeSettings(SettingsTable):
     )
     deviation_time: float = 0.2  # s; for which they must be that far off
     confirming_deviation: float = 0.4  # m; of one vehicle, which confirms that the payload's unit reports it overturned
-    wind_limit: float = setting(4.8, "m/s", "estimated wind above which the flight is ended", gt=0.0)
+    wind_drag: float = setting(
+        0.38, "", "share of the payload's weight; level drag on it at rest above which the flight is ended", gt=0.0
+    )
     # rad; of a vehicle on board, by the force that it pulls aside with: less is compensated
     attitude_error: float = 0.09
     tilt_time: float = 0.5  # s; for which the tilt must exceed its limit

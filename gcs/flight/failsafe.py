@@ -271,8 +271,12 @@ def _impact(system: System, moment: Moment) -> Trigger | None:
 def _wind_exceeded(system: System, moment: Moment) -> Trigger | None:
     if moment.estimate is None or (air := system.guidance.air) is None:
         return None
-    speed, limit = math.hypot(*air.wind[:2]), system.settings.wind_limit
-    return Trigger(f"the wind is {speed:.1f} m/s by its drag (limit {limit:g} m/s)") if speed > limit else None
+    p, limit = system.team.parameters, system.settings.wind_drag
+    weight = (p.m_0 + moment.estimate.mass_excess) * p.g + float(moment.estimate.force[2])
+    drag = math.hypot(*air.on_payload(np.zeros(3))[:2])
+    if drag <= limit * max(weight, 0.0):
+        return None
+    return Trigger(f"the wind pushes the payload aside by {drag:.1f} N, of {weight:.1f} N weight (limit {limit:.0%})")
 
 
 def _climb_stalled(system: System, moment: Moment) -> Trigger | None:
@@ -410,7 +414,7 @@ class Failsafe(AlarmCode):
     ATTITUDE_WRONG = (Check.ESTIMATE, attitude_wrong, Reaction.BRAKE_AND_LAND, "check its navigation",
         "a vehicle pulls aside, as if its attitude were wrong on board by more than {attitude_error} rad")
     WIND_EXCEEDED = (Check.ESTIMATE, _wind_exceeded, Reaction.AUTONOMOUS_LANDING, "wait for less wind",
-        "the wind, as estimated by its drag, is more than {wind_limit:g} m/s")
+        "the drag of the wind on the payload at rest is estimated as more than {wind_drag:.0%} of its weight")
     CLIMB_STALLED = (Check.ESTIMATE, _climb_stalled, Reaction.BRAKE_AND_LAND, "check the load, and what holds it",
         "the payload is still on the ground, below its plan by more than the margin and the bound on its deviation")
     DESCENT_STALLED = (Check.ESTIMATE, _descent_stalled, Reaction.AUTONOMOUS_LANDING, "check wind, load and positions",

@@ -263,10 +263,25 @@ def test_touch_down_is_no_impact():
     assert impact(2.0, [2, 2, 2, 2], payload=5, monitor=monitor)[0] is None  # lifted again
 
 
-@pytest.mark.parametrize(("speed", "ends"), [(None, False), (-0.1, False), (0.1, True)])
-def test_wind_beyond_its_limit_ends_the_flight(speed, ends):
-    limit = DEFAULTS.failsafe.wind_limit
-    air = None if speed is None else Air((limit + speed) * np.array([-0.6, 0.8, 0.0]), np.zeros(3), 0.0)
-    system = SimpleNamespace(guidance=SimpleNamespace(air=air), settings=DEFAULTS.failsafe)
-    found = Failsafe.WIND_EXCEEDED.condition(system, Moment(Phase.FLY, 100.0, 100.0, estimate=object()))
+@pytest.mark.parametrize(
+    ("share", "excess", "force", "ends"),
+    [
+        (None, 0.0, 0.0, False),
+        (0.9, 0.0, 0.0, False),
+        (1.1, 0.0, 0.0, True),
+        (0.9, -0.5, 0.0, True),
+        (1.1, 0.0, 9.0, False),
+    ],
+)
+def test_wind_that_pushes_the_payload_by_more_than_a_share_of_its_weight_ends_the_flight(share, excess, force, ends):
+    p = read_system().parameters()
+    air = None
+    if share is not None:
+        drag = share * DEFAULTS.failsafe.wind_drag * p.m_0 * p.g
+        air = Air(np.array([0.0, -4.0, 0.0]), np.array([0.1, drag / 16.0, 0.1]), 0.0)
+    system = SimpleNamespace(
+        guidance=SimpleNamespace(air=air), settings=DEFAULTS.failsafe, team=SimpleNamespace(parameters=p)
+    )
+    estimate = SimpleNamespace(mass_excess=excess, force=np.array([5.0, 0.0, force]))
+    found = Failsafe.WIND_EXCEEDED.condition(system, Moment(Phase.FLY, 100.0, 100.0, estimate=estimate))
     assert (found is not None) == ends

@@ -52,12 +52,17 @@ def checked(
         for i in range(len(places))
     ]
     clock = SimpleNamespace(
-        queue=LinkQueue(1.0), round_trip_excess=0.0, delay=0.0, round_trip_max=round_trip, least_delay=lambda *_: 0.0
+        queue=LinkQueue(1.0),
+        round_trip_excess=0.0,
+        delay=0.0,
+        round_trip_max=round_trip,
+        least_delay=lambda *_: 0.0,
+        answered_at=0.0,
     )
     links = [
         SimpleNamespace(
             system_id=i + 1, status=status, clock=clock, attitude_received_at=0.0, position_received_at=0.0,
-            payload_received_at=0.0,
+            payload_received_at=0.0, setpoints=SimpleNamespace(loss=0.0),
         )
         for i, status in enumerate(statuses)
     ]  # fmt: skip
