@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from gcs.errors import UnusableInput
 from gcs.record.reader import read_table
 from gcs.record.tables import MODES
 
@@ -21,9 +22,11 @@ def stops_after(run_dir: Path | str, since: float) -> dict[int, float]:
 
 
 def armed_at_end(run_dir: Path | str) -> list[int]:
-    """Return the system ids of the vehicles that were armed at the end, in rising order; none without the file.
+    """Return the system ids of the vehicles that were armed at the end, in rising order.
 
-    Raises :class:`gcs.errors.UnusableInput` for a damaged one.
+    Raises :class:`gcs.errors.UnusableInput` where the file is damaged, or absent.
     """
+    if not (Path(run_dir) / MODES).exists():
+        raise UnusableInput(f"{Path(run_dir) / MODES}: there is no such file")
     armed = {int(row["vehicle"]): bool(row["armed"]) for row in read_table(Path(run_dir) / MODES)}
     return sorted(vehicle for vehicle, is_armed in armed.items() if is_armed)

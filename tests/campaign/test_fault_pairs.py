@@ -10,7 +10,7 @@ import pytest
 from gcs.app.cli import main
 from gcs.campaign.faults.campaign_file import read_campaign
 from gcs.campaign.faults.fault_pairs import covering_sample
-from gcs.campaign.faults.judgement import DISARMED, SAFE, meets
+from gcs.campaign.faults.judgement import DISARMED, SAFE, meets, vehicles_armed_at_end
 from gcs.campaign.faults.plans import FaultFlights
 from gcs.campaign.result import Result
 from gcs.record.modes import armed_at_end
@@ -192,8 +192,10 @@ def test_vehicle_armed_at_the_end_and_false_completion_do_not_pass(tmp_path):
     assert meets(SAFE, Result(**{**vars(landed), "armed_at_end": "2"}))
     rows = ["time_s,vehicle,mode,armed,failsafe", "0.0,1,HOLD,0,0", "0.0,2,HOLD,0,0", "1.0,1,OFFBOARD,1,0",
             "1.0,2,OFFBOARD,1,0", "9.0,1,HOLD,0,0"]  # fmt: skip
+    assert vehicles_armed_at_end(tmp_path) == "unknown"
+    assert not meets(DISARMED, Result(**{**vars(landed), "armed_at_end": "unknown"}))
     (tmp_path / "modes.csv").write_text("\n".join(rows) + "\n")
-    assert armed_at_end(tmp_path) == [2]
+    assert armed_at_end(tmp_path) == [2] and vehicles_armed_at_end(tmp_path) == "2"
 
 
 def test_report_has_a_row_for_each_value_of_each_factor(tmp_path):

@@ -65,7 +65,7 @@ def judge(case: Case, plan: FlightPlan, flown: Flown, run_dir: Path) -> dict[str
         "outcome": outcome(flown).value,
         "within_limits": flown.exit_code == 0,
         "failures": " ".join(limits_not_held(flown.summary)),
-        "armed_at_end": " ".join(map(str, _armed_at_end(run_dir))),
+        "armed_at_end": vehicles_armed_at_end(run_dir),
         "stop_s": stop,
         "team_stop_s": last,
         "team_spread_s": spread,
@@ -109,12 +109,12 @@ def meets(requirement: str, result: Result) -> bool:
     return safe and is_down and upright and not (result.outcome == Outcome.COMPLETED and "arrival" in failures)
 
 
-def _armed_at_end(run_dir: Path) -> list[int]:
-    """Return the vehicles (system ids) that were armed at the end; none without a record of their modes."""
+def vehicles_armed_at_end(run_dir: Path) -> str:
+    """Return the vehicles (system ids) that were armed at the end; "unknown" without a record of their modes."""
     try:
-        return armed_at_end(run_dir)
+        return " ".join(map(str, armed_at_end(run_dir)))
     except UnusableInput:
-        return []
+        return "unknown"
 
 
 def first_start(run_dir: Path, count: int | None = None) -> float | None:
