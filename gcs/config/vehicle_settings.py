@@ -47,6 +47,8 @@ class NavigationSettings(SettingsTable):
     # rad/s; bandwidth of body rates estimated from the attitude: above that of the attitude loop
     rates_bandwidth: float = 30.0
     gap_max: float = 0.05  # s; between samples; after a longer gap that estimate begins anew
+    still_force: float = 0.3  # m/s2; by which the specific force of a vehicle that stands differs from gravity
+    still_time: float = 0.5  # s; for which it must, until the velocity is taken to be zero
     rates_window: float = 0.1  # s; over which body rates are compared with the change of the attitude
     # standard deviations of the difference of two attitudes by which rates may miss it: chi-square of 3 axes at 1e-9
     rates_sigmas: float = 6.7

@@ -9,10 +9,6 @@ from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.autopilot.onboard_kernels import FRESH_AT, REFUSED_UNTIL, SAMPLE_TIME, THRUST, WEIGHT
 from vehicle_sim.world.sensors import ACCELEROMETER_RANGE, Measurement, is_rotation
 
-_STILL = 0.3
-"""m/s2; by which the specific force of a vehicle that stands differs from gravity: vibration."""
-_STILL_TIME = 0.5  # s
-
 
 class Navigation:
     """Takes the sensors' samples, and for a sensor that is stuck or gives no numbers, an estimate from the others.
@@ -141,8 +137,8 @@ class Navigation:
         assert self.specific_force is not None
         size = math.hypot(*self.specific_force)
         carried = self.arrays.targets.item(0, THRUST) < self.arrays.detectors.item(0, WEIGHT)
-        self._still = self._still + step if carried and abs(size - self._g) < _STILL else 0.0
-        if size > ACCELEROMETER_RANGE or self._still > _STILL_TIME:
+        self._still = self._still + step if carried and abs(size - self._g) < self._settings.still_force else 0.0
+        if size > ACCELEROMETER_RANGE or self._still > self._settings.still_time:
             return 0.0, 0.0, 0.0
         return accelerated(velocity, attitude, self.specific_force, self._g, step)
 
