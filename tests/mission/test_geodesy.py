@@ -6,8 +6,8 @@ import random
 import pymap3d
 import pytest
 
+from gcs.mavlink.services.local_frame import LocalFrame
 from gcs.mission.model import DEFAULT_HOME, Home
-from vehicle_sim.mavlink.geodesy import LocalFrame
 from vehicle_sim.world.sensors import Measurement
 
 METRES_PER_DEG = 111_320.0

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from programs import PATIENCE, base_port, process
 
+from gcs.mavlink.services.local_frame import LocalFrame
 from gcs.mission.model import DEFAULT_HOME
 from gcs.record.reader import read_table
-from vehicle_sim.mavlink.geodesy import LocalFrame
 
 FRAME = LocalFrame(DEFAULT_HOME)
 GROUND = -0.02  # m, z of a vehicle that stands on the ground

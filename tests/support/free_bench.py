@@ -12,9 +12,9 @@ import pymavlink.dialects.v20.common as mavlink
 from gcs.config import read_system
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
+from gcs.mavlink.services.local_frame import LocalFrame
 from gcs.mavlink.services.mission_item import MissionItem
 from gcs.mission.model import DEFAULT_HOME
-from vehicle_sim.mavlink.geodesy import LocalFrame
 from vehicle_sim.swarm import Swarm
 
 GROUND = ("ground", 1)

@@ -11,8 +11,8 @@ from mission_ground import MISSION, PLAN, item_message
 from vehicle_bench import GROUND, PAYLOAD_UNIT, Bench, command
 
 from gcs.mavlink import px4
+from gcs.mavlink.services.local_frame import LocalFrame
 from gcs.mission.model import DEFAULT_HOME
-from vehicle_sim.mavlink.geodesy import LocalFrame
 from vehicle_sim.world.range_sensor import RangeSample
 
 NAN = math.nan

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.mavlink.services.local_frame import LocalFrame
 from gcs.mavlink.services.mission_item import MissionItem
 from idc_controller.rotations_float import Vector
 from vehicle_sim.autopilot.free.fence import Circle, Fence, Point, Polygon
-from vehicle_sim.mavlink.geodesy import LocalFrame
 
 _ABOVE_HOME = (mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT)
 _CORNERS = (mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION, mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from gcs.mavlink import px4
 from gcs.mavlink.services.aircraft import Orbit, Place, Reposition, Turn
 from gcs.mavlink.services.answer import ACCEPTED, Answer, denied, rejected_for_now
+from gcs.mavlink.services.local_frame import LocalFrame
 from gcs.mavlink.services.mission_item import MissionItem
 from idc_controller.rotations_float import Vector
 from vehicle_sim.autopilot.free.autopilot import FreeAutopilot
@@ -15,7 +16,6 @@ from vehicle_sim.autopilot.free.orbit import begin_orbit
 from vehicle_sim.mavlink.aircraft import SimulatedAircraft
 from vehicle_sim.mavlink.control_owner import ControlOwner
 from vehicle_sim.mavlink.fence_areas import fence_of, rally_points_of
-from vehicle_sim.mavlink.geodesy import LocalFrame
 from vehicle_sim.mavlink.mission_steps import steps_of
 
 

@@ -5,11 +5,11 @@ from collections.abc import Callable, Sequence
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.mavlink.services.local_frame import LocalFrame
 from gcs.mavlink.services.mission_item import UNKNOWN, MissionItem
 from gcs.mission.commands import Command
 from idc_controller.rotations_float import Vector
 from vehicle_sim.autopilot.free.mission import Action, MissionStep
-from vehicle_sim.mavlink.geodesy import LocalFrame
 
 _ABOVE_HOME = (mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT)
 _NONE: Vector = (math.nan, math.nan, math.nan)

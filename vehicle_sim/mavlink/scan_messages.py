@@ -5,7 +5,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.layout import LAYOUTS, Packed, PackedRun
 from gcs.mavlink.services.aircraft import Built
-from vehicle_sim.mavlink.report import Report
+from vehicle_sim.mavlink.report import VehicleReport
 from vehicle_sim.mavlink.scan_kernels import nearest_by_sector
 from vehicle_sim.world.range_sensor import RangeSample
 
@@ -18,7 +18,7 @@ _SECTORS, _NO_RETURN = 72, 0xFFFF
 class ScanMessages:
     """The messages of the last scan, built once for all peers."""
 
-    def __init__(self, report: Report) -> None:
+    def __init__(self, report: VehicleReport) -> None:
         self._report = report
         self._built: tuple[RangeSample | None, Built, Built] = (None, (), ())
         """The scan that was built last, its returns, and its end."""

@@ -6,6 +6,7 @@ from typing import Any
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.services.dispatcher import Dispatcher, Request
+from gcs.mavlink.services.local_frame import LocalFrame
 from gcs.mavlink.services.unserved_inputs import Reminders
 from gcs.mavlink.stop_plan import read_stop_plan
 from idc_controller.rotations_float import euler_of
@@ -14,7 +15,6 @@ from vehicle_sim.autopilot.position_setpoints import read_global, read_local
 from vehicle_sim.autopilot.setpoint_stream import Setpoint
 from vehicle_sim.autopilot.setpoints import SetpointError, checked_stop_plan, read_setpoint
 from vehicle_sim.mavlink.control_owner import ControlOwner
-from vehicle_sim.mavlink.geodesy import LocalFrame
 
 STAMP_WRAP = 2**32 * 1e-3  # s after which stamps of 32 bits begin anew
 

@@ -7,11 +7,11 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.layout import LAYOUTS, packed
 from gcs.mavlink.services.aircraft import Built
+from gcs.mavlink.services.local_frame import clamp
 from idc_controller.rotations_float import Vector, euler_of
 from vehicle_sim.autopilot.actuation import LEVEL
 from vehicle_sim.autopilot.flight_state import PositionTarget
-from vehicle_sim.mavlink.geodesy import clamp
-from vehicle_sim.mavlink.report import Report
+from vehicle_sim.mavlink.report import VehicleReport
 
 _ATTITUDE_TARGET = LAYOUTS[mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET]
 _POSITION_TARGET = LAYOUTS[mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED]
@@ -23,7 +23,7 @@ _OUTPUTS = 32  # of ACTUATOR_OUTPUT_STATUS
 _FLOAT_MAX = (2.0 - 2.0**-23) * 2.0**127  # in single precision
 
 
-def attitude_target(report: Report, now: float) -> Built:
+def attitude_target(report: VehicleReport, now: float) -> Built:
     """Attitude, rates and thrust that are flown, stamped with the moment at which they began to act, as by PX4."""
     actuation = report.autopilot.state.actuation
     attitude, rates, thrust = actuation.target
@@ -32,7 +32,7 @@ def attitude_target(report: Report, now: float) -> Built:
     return (_ATTITUDE_TARGET.pack(report.time_boot_ms(since), *(attitude or LEVEL), *rates, thrust, mask),)
 
 
-def position_target(report: Report, now: float) -> Built:
+def position_target(report: VehicleReport, now: float) -> Built:
     """What the position control follows; there is nothing while an attitude is flown."""
     target = report.autopilot.state.position_target(now)
     if target is None:
@@ -45,7 +45,7 @@ def position_target(report: Report, now: float) -> Built:
     )  # fmt: skip
 
 
-def global_position_target(report: Report, now: float) -> Built:
+def global_position_target(report: VehicleReport, now: float) -> Built:
     """The place where what is flown ends, as by PX4; there is none while an attitude or a velocity is flown."""
     target = report.autopilot.state.position_target(now)
     if target is None or not math.isfinite(sum(target.destination)):
@@ -59,7 +59,7 @@ def global_position_target(report: Report, now: float) -> Built:
     )  # fmt: skip
 
 
-def nav_controller_output(report: Report, now: float) -> Built:
+def nav_controller_output(report: VehicleReport, now: float) -> Built:
     """The attitude that is flown, distance and bearing of the place where that ends, and the error of the altitude."""
     measured = report.own_state
     if measured is None:
@@ -82,7 +82,7 @@ def nav_controller_output(report: Report, now: float) -> Built:
     )
 
 
-def orbit_execution_status(report: Report, now: float) -> Built:
+def orbit_execution_status(report: VehicleReport, now: float) -> Built:
     """The circle of an orbit; there is none otherwise."""
     orbit = report.autopilot.state.orbit
     if orbit is None:
@@ -95,13 +95,13 @@ def orbit_execution_status(report: Report, now: float) -> Built:
     )
 
 
-def servo_output_raw(report: Report, now: float) -> Built:
+def servo_output_raw(report: VehicleReport, now: float) -> Built:
     """The commanded rotor speeds as pulse widths: 1000 us is none, 2000 us the largest."""
     pulses = [round(_PULSE_MIN + _PULSE_RANGE * share) for share in _speed_shares(report)]
     return packed(mavlink.MAVLink_servo_output_raw_message(report.time_boot_us(now) & 0xFFFFFFFF, 0, *pulses, *[0] * 4))
 
 
-def actuator_output_status(report: Report, now: float) -> Built:
+def actuator_output_status(report: VehicleReport, now: float) -> Built:
     """The commanded rotor speeds as shares of the largest; active while it is armed."""
     outputs = [*_speed_shares(report), *[0.0] * (_OUTPUTS - _ROTORS)]
     active = (1 << _ROTORS) - 1 if report.autopilot.armed else 0
@@ -130,7 +130,7 @@ def _mask(target: PositionTarget, position: Vector) -> int:
     return ignored
 
 
-def _speed_shares(report: Report) -> list[float]:
+def _speed_shares(report: VehicleReport) -> list[float]:
     """Return the commanded rotor speeds as shares of the largest, 0 .. 1, in the order of PX4's X layout."""
     speed_max = report.autopilot.state.airframe.rotors.rotor_speed_max
     speeds = report.autopilot.arrays.speeds[0].tolist() if report.autopilot.armed else [0.0] * _ROTORS

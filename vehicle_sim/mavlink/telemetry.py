@@ -7,25 +7,26 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
 from gcs.mavlink.layout import packed
+from gcs.mavlink.services import motion_messages, status_messages
 from gcs.mavlink.services.aircraft import Built, MessageKey
+from gcs.mavlink.services.motion_messages import attitude_of, position_of, vibration
 from gcs.mission.model import Home
 from vehicle_sim.autopilot.autopilot import Autopilot
-from vehicle_sim.mavlink import motion_messages, status_messages, target_messages
-from vehicle_sim.mavlink.motion_messages import attitude_of, position_of, vibration
-from vehicle_sim.mavlink.report import Report
+from vehicle_sim.mavlink import target_messages
+from vehicle_sim.mavlink.report import VehicleReport
 from vehicle_sim.mavlink.scan_messages import ScanMessages
 
 _OWN, _UNIT = px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT
 _SCAN = mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE
 
 
-class Telemetry(Report):
+class Telemetry(VehicleReport):
     """Builds messages from one vehicle's autopilot, and from the payload unit's samples it relays."""
 
     def __init__(
         self, system_id: int, autopilot: Autopilot, home: Home, boot_time: float, clock: Callable[[float], float]
     ) -> None:
-        """See :class:`.Report`."""
+        """See :class:`.VehicleReport`."""
         super().__init__(system_id, autopilot, home, boot_time, clock)
         scan = ScanMessages(self)
         tables = status_messages.MESSAGES | motion_messages.MESSAGES | target_messages.MESSAGES

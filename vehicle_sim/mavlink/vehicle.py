@@ -16,6 +16,7 @@ from gcs.mavlink.services.commands import CommandServer
 from gcs.mavlink.services.dispatcher import Dispatcher, Request
 from gcs.mavlink.services.files import FileServices
 from gcs.mavlink.services.link import LinkServices
+from gcs.mavlink.services.local_frame import LocalFrame
 from gcs.mavlink.services.mission_store import MissionStore
 from gcs.mavlink.services.missions import MissionServer
 from gcs.mavlink.services.other_components import OtherComponents
@@ -33,7 +34,6 @@ from vehicle_sim.autopilot.vehicle_parameters import vehicle_parameters
 from vehicle_sim.mavlink.aircraft import CoupledAircraft
 from vehicle_sim.mavlink.control_owner import ControlOwner
 from vehicle_sim.mavlink.free_aircraft import FreeAircraft
-from vehicle_sim.mavlink.geodesy import LocalFrame
 from vehicle_sim.mavlink.mission_plans import CoupledPlans, MissionPlans
 from vehicle_sim.mavlink.setpoint_server import AttitudeSetpointServer, PositionSetpointServer, SetpointServer
 from vehicle_sim.mavlink.streams import CLIENT_STREAMS, OFFSETS, default_intervals

@@ -1,4 +1,4 @@
-"""Messages of what a vehicle is and of the state that it is in."""
+"""Messages of what an aircraft is and of the state that it is in."""
 
 import math
 from importlib.metadata import version
@@ -8,8 +8,8 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 from gcs.mavlink import newer_messages, px4
 from gcs.mavlink.layout import LAYOUTS, packed
 from gcs.mavlink.services.aircraft import Built
-from vehicle_sim.autopilot.actuation import LEVEL
-from vehicle_sim.mavlink.report import Report
+from gcs.mavlink.services.report import Report
+from idc_controller.rotations_float import IDENTITY
 
 _SENSORS: int = (
     mavlink.MAV_SYS_STATUS_SENSOR_3D_GYRO
@@ -49,26 +49,23 @@ _VERSION = _software_version()
 
 def heartbeat(report: Report, now: float) -> Built:
     """Mode, arming and failsafe."""
-    autopilot = report.autopilot
     base_mode = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | mavlink.MAV_MODE_FLAG_STABILIZE_ENABLED
-    main, _ = px4.decode_custom_mode(autopilot.mode)
+    main, _ = px4.decode_custom_mode(report.mode)
     if main in (px4.MainMode.AUTO, px4.MainMode.OFFBOARD):
         base_mode |= mavlink.MAV_MODE_FLAG_AUTO_ENABLED | mavlink.MAV_MODE_FLAG_GUIDED_ENABLED
     else:
         base_mode |= mavlink.MAV_MODE_FLAG_MANUAL_INPUT_ENABLED
     state = mavlink.MAV_STATE_STANDBY
-    if autopilot.failsafe:
+    if report.failsafe:
         state = mavlink.MAV_STATE_CRITICAL
-    elif autopilot.armed:
+    elif report.armed:
         state = mavlink.MAV_STATE_ACTIVE
-    elif autopilot.state.navigation.estimate is None:
+    elif report.is_booting:
         state = mavlink.MAV_STATE_BOOT
-    if autopilot.armed:
+    if report.armed:
         base_mode |= mavlink.MAV_MODE_FLAG_SAFETY_ARMED
     return packed(
-        mavlink.MAVLink_heartbeat_message(
-            mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_PX4, base_mode, autopilot.mode, state, 3
-        )
+        mavlink.MAVLink_heartbeat_message(report.mav_type, mavlink.MAV_AUTOPILOT_PX4, base_mode, report.mode, state, 3)
     )
 
 
@@ -76,27 +73,27 @@ def sys_status(report: Report, now: float) -> Built:
     """Health of sensors and range sensor, and whether it can be armed."""
     present = _SENSORS | _ALWAYS | _PREARM
     health = _ALWAYS
-    if report.scan is not None:
+    if (works := report.range_sensor_works) is not None:
         present |= _RANGE_SENSOR
-        if report.scan.works:
+        if works:
             health |= _RANGE_SENSOR
-    if report.autopilot.state.navigation.is_valid(now):
+    if report.has_attitude(now):
         health |= _SENSORS
-        if not report.autopilot.state.has_position(now):
+        if not report.has_position(now):
             health &= ~mavlink.MAV_SYS_STATUS_SENSOR_GPS
-    if report.autopilot.arming_problem(now) is None:
+    if report.arming_problem(now) is None:
         health |= _PREARM
     return packed(mavlink.MAVLink_sys_status_message(present, present, health, 100, 16000, -1, 100, 0, 0, 0, 0, 0, 0))
 
 
 def extended_sys_state(report: Report, now: float) -> Built:
     """On the ground, in the air, landing."""
-    return (_EXTENDED_SYS_STATE.pack(mavlink.MAV_VTOL_STATE_UNDEFINED, report.autopilot.landed_state),)
+    return (_EXTENDED_SYS_STATE.pack(mavlink.MAV_VTOL_STATE_UNDEFINED, report.landed_state),)
 
 
 def current_mode(report: Report, now: float) -> Built:
     """The mode that is flown, and the one that was commanded."""
-    flown, intended = report.autopilot.mode, report.autopilot.state.mode
+    flown, intended = report.mode, report.intended_mode
     return (_CURRENT_MODE.pack(flown, intended, px4.standard_mode(flown)),)
 
 
@@ -112,10 +109,10 @@ def system_time(report: Report, now: float) -> Built:
 
 def home_position(report: Report, now: float) -> Built:
     """The place of home."""
-    home = report.autopilot.home
+    home = report.return_position
     return packed(
         mavlink.MAVLink_home_position_message(
-            *report.frame.place(home), *home, list(LEVEL), _NAN, _NAN, _NAN, report.time_boot_us(now)
+            *report.frame.place(home), *home, list(IDENTITY), _NAN, _NAN, _NAN, report.time_boot_us(now)
         )
     )
 

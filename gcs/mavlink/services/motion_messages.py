@@ -1,4 +1,4 @@
-"""Messages of attitude, place and motion, built from the sample that a vehicle reports."""
+"""Messages of attitude, place and motion, built from the sample that an aircraft reports."""
 
 import math
 
@@ -7,10 +7,9 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 from gcs.mavlink import px4
 from gcs.mavlink.layout import LAYOUTS, packed
 from gcs.mavlink.services.aircraft import Built
+from gcs.mavlink.services.local_frame import Motion, clamp, is_finite
+from gcs.mavlink.services.report import Report
 from idc_controller.rotations_float import euler_of, into_body
-from vehicle_sim.mavlink.geodesy import clamp, is_finite
-from vehicle_sim.mavlink.report import Report
-from vehicle_sim.world.sensors import Measurement
 
 _NAN = math.nan
 _NO_OFFSET = (0.0, 0.0, 0.0, 0.0)
@@ -53,7 +52,7 @@ _LOWEST = -5000.0  # m
 _ZERO_CELSIUS = 273.15  # K
 
 
-def attitude_of(report: Report, measured: Measurement | None) -> Built:
+def attitude_of(report: Report, measured: Motion | None) -> Built:
     """Attitude and body rates of a sample, as a quaternion."""
     if measured is None:
         return ()
@@ -61,7 +60,7 @@ def attitude_of(report: Report, measured: Measurement | None) -> Built:
     return (_ATTITUDE_QUATERNION.pack(stamp, *measured.attitude, *measured.rates, *_NO_OFFSET),)
 
 
-def position_of(report: Report, measured: Measurement | None) -> Built:
+def position_of(report: Report, measured: Motion | None) -> Built:
     """Position and velocity of a sample, from home."""
     if measured is None:
         return ()
@@ -106,7 +105,7 @@ def global_position(report: Report, now: float) -> Built:
     latitude, longitude, altitude = report.frame.place_of(measured)
     v_x, v_y, v_z = (clamp(100.0 * v, 16) for v in measured.velocity)
     heading = round(math.degrees(euler_of(measured.attitude)[2]) * 100.0) % 36000
-    height = clamp(1e3 * (report.autopilot.home[2] - measured.position[2]), 32)
+    height = clamp(1e3 * (report.return_position[2] - measured.position[2]), 32)
     stamp = report.time_boot_ms(measured.time)
     return (_GLOBAL_POSITION_INT.pack(stamp, latitude, longitude, altitude, height, v_x, v_y, v_z, heading),)
 
@@ -136,7 +135,7 @@ def vfr_hud(report: Report, now: float) -> Built:
     v_n, v_e, v_d = measured.velocity
     speed = math.hypot(v_n, v_e)
     heading = round(math.degrees(euler_of(measured.attitude)[2])) % 360
-    throttle = round(100.0 * report.autopilot.state.actuation.target[2])
+    throttle = round(100.0 * report.throttle)
     return (_VFR_HUD.pack(speed, speed, _altitude_of(report, measured), -v_d, heading, throttle),)
 
 
@@ -161,7 +160,7 @@ def altitude(report: Report, now: float) -> Built:
     if measured is None:
         return ()
     above_sea, height = _altitude_of(report, measured), -measured.position[2]
-    above_home = report.autopilot.home[2] + height
+    above_home = report.return_position[2] + height
     stamp = report.time_boot_us(measured.time)
     return (_ALTITUDE.pack(stamp, above_sea, above_sea, height, above_home, report.home.altitude, height),)
 
@@ -173,7 +172,7 @@ def highres_imu(report: Report, now: float) -> Built:
         return ()
     above_sea = _altitude_of(report, measured)
     pressure, temperature = _air_at(above_sea)
-    force = report.autopilot.state.specific_force
+    force = report.specific_force
     updated = _GYROS | _BAROMETER | (0 if force is None else _ACCELEROMETERS)
     return packed(
         mavlink.MAVLink_highres_imu_message(
@@ -195,14 +194,13 @@ def scaled_pressure(report: Report, now: float) -> Built:
 
 def estimator_status(report: Report, now: float) -> Built:
     """What the estimate holds: all while samples come, attitude alone without a position; no test ratios."""
-    state = report.autopilot.state
-    flags = _ESTIMATED if state.has_position(now) else 0
-    if state.navigation.is_valid(now):
+    flags = _ESTIMATED if report.has_position(now) else 0
+    if report.has_attitude(now):
         flags |= mavlink.ESTIMATOR_ATTITUDE
     return packed(mavlink.MAVLink_estimator_status_message(report.time_boot_us(now), flags, *[_NAN] * 8))
 
 
-def _altitude_of(report: Report, measured: Measurement) -> float:
+def _altitude_of(report: Report, measured: Motion) -> float:
     """Return the altitude above mean sea level (m)."""
     return report.home.altitude - measured.position[2]
 

@@ -1,10 +1,40 @@
 """Conversions from a sample in the north-east-down frame to what MAVLink's integer and geodetic fields hold."""
 
 import math
+from typing import Protocol
 
-from gcs.mission.model import Home
-from idc_controller.rotations_float import Vector
-from vehicle_sim.world.sensors import Measurement
+from idc_controller.rotations_float import Quaternion, Vector
+
+
+class Motion(Protocol):
+    """A sample of an aircraft's motion.
+
+    ``time`` in s; ``attitude`` unit quaternion body to world, w first; ``rates`` in the body frame (rad/s);
+    ``position`` (m) and ``velocity`` (m/s) in the local frame, NED.
+    """
+
+    @property
+    def time(self) -> float: ...  # noqa: D102
+    @property
+    def attitude(self) -> Quaternion: ...  # noqa: D102
+    @property
+    def rates(self) -> Vector: ...  # noqa: D102
+    @property
+    def position(self) -> Vector: ...  # noqa: D102
+    @property
+    def velocity(self) -> Vector: ...  # noqa: D102
+
+
+class Origin(Protocol):
+    """Origin of a local frame: latitude and longitude (deg), altitude above mean sea level (m)."""
+
+    @property
+    def latitude(self) -> float: ...  # noqa: D102
+    @property
+    def longitude(self) -> float: ...  # noqa: D102
+    @property
+    def altitude(self) -> float: ...  # noqa: D102
+
 
 Place = tuple[int, int, int]
 """Latitude and longitude (1e-7 deg), altitude (mm)."""
@@ -22,7 +52,7 @@ _SECOND_ECCENTRICITY_SQUARED = _ECCENTRICITY_SQUARED / (1.0 - _ECCENTRICITY_SQUA
 class LocalFrame:
     """The north-east-down frame at a home on the ellipsoid of WGS 84."""
 
-    def __init__(self, home: Home) -> None:
+    def __init__(self, home: Origin) -> None:
         self.origin: Place = round(home.latitude * 1e7), round(home.longitude * 1e7), round(home.altitude * 1e3)
         self._longitude, self.altitude = home.longitude, home.altitude
         latitude = math.radians(home.latitude)
@@ -60,7 +90,7 @@ class LocalFrame:
         z = (normal * (1.0 - _ECCENTRICITY_SQUARED) + altitude) * sin - self._above_equator
         return self._cos * z - self._sin * x, from_axis * math.sin(turn), -self._cos * x - self._sin * z
 
-    def place_of(self, measured: Measurement) -> Place:
+    def place_of(self, measured: Motion) -> Place:
         """Return the place of a sample."""
         return self.place(measured.position)
 
@@ -72,7 +102,7 @@ class LocalFrame:
         return clamp(latitude * 1e7, 32), clamp(longitude * 1e7, 32), clamp(altitude * 1e3, 32)
 
 
-def is_finite(measured: Measurement) -> bool:
+def is_finite(measured: Motion) -> bool:
     """Return True if every number of a sample is finite."""
     return math.isfinite(sum(measured.attitude) + sum(measured.rates) + sum(measured.position) + sum(measured.velocity))
 
