@@ -1,7 +1,7 @@
 """One flight, from connecting to disarming: its phases, the control step in each, and the reactions to failsafes."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from gcs.flight.preflight import Preflight
 from gcs.flight.spool import Touchdown
 from gcs.flight.team import Team
 from gcs.mission.model import Mission
+from gcs.mission.route import Leg
 from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import Estimate, Measurement
 from idc_controller.perception.obstacle_map import ObstacleMap
@@ -44,6 +45,10 @@ class Flight:
         """The objects that the conditions of failsafes are evaluated on."""
         self.failsafes = FailsafeState(self.system, alarms)
         self.phase = Phase.CONNECT
+        self.may_arm = self.may_take_off = True
+        """Whether it goes on from the check before take-off, and with armed vehicles from the ground, by itself."""
+        self.is_ready = False
+        """True while the check before take-off is passed."""
         self.time = 0.0
         """Team time of the last control step."""
         self.ground_time = 0.0
@@ -152,6 +157,24 @@ class Flight:
             self.mission_trajectory.brake_and_land(followed, progress)
             guidance.restart(time, progress)
 
+    # Orders
+
+    def fly(self, legs: Iterator[Leg], speed: float) -> None:
+        """Come to rest within the limits, then fly ``legs`` from there, none faster than ``speed`` (m/s), and land.
+
+        Only before the landing, and while no failsafe lands the payload.
+        """
+        assert self.mission_trajectory is not None
+        guidance, time = self.system.guidance, self.time
+        followed, progress = guidance.stopping_trajectory(time, self.mission_trajectory.trajectory)
+        self.mission_trajectory.go_on(followed, progress, legs, speed)
+        guidance.restart(time, progress)
+
+    def stand_down(self) -> None:
+        """Disarm vehicles that wait on the ground, armed, for their take-off."""
+        if self.phase is Phase.ARM:
+            self._disarm(self.time)
+
     # Phases
 
     def step(
@@ -179,7 +202,7 @@ class Flight:
             case Phase.CHECK:
                 self._check(time, now)
             case Phase.ARM:
-                if self._step_sequence(time, now):
+                if self._is_armed(time, now) and self.may_take_off:
                     self._begin_spool_up(time)
                 return (None if self.reason else self._idle()), None
             case Phase.AUTONOMOUS_LANDING:
@@ -204,6 +227,15 @@ class Flight:
         self._sequence.step(time, now)
         return not self._evaluate(Check.COMMAND, time, now) and self._sequence.done
 
+    def _is_armed(self, time: float, now: float) -> bool:
+        assert self._sequence is not None
+        if not self._sequence.done:
+            return self._step_sequence(time, now)
+        if not self.system.team.armed:
+            self._disarm(time)  # a vehicle has disarmed by itself
+            return False
+        return True
+
     def _connect(self, time: float, now: float) -> None:
         preflight = self.system.preflight
         preflight.uptime = max(float(math.floor(time - now)), 0.0)
@@ -215,7 +247,9 @@ class Flight:
 
     def _check(self, time: float, now: float) -> None:
         preflight = self.system.preflight
-        if not self._evaluate(Check.PREFLIGHT, time, now) and preflight.has_positions and preflight.is_settled(time):
+        passed = not self._evaluate(Check.PREFLIGHT, time, now)
+        self.is_ready = passed and preflight.has_positions and preflight.is_settled(time)
+        if self.is_ready and self.may_arm:
             self._pad = RestTrajectory(preflight.payload, time)
             self._sequence = Arming(self.system.team, time, self._settings)
             self.phase = Phase.ARM

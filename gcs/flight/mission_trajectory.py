@@ -35,6 +35,9 @@ class MissionTrajectory:
         along = up.then(lambda time, here: self._flown(mission, legs, time, here))
         self.trajectory: Trajectory = along.then(self._land)
         self._braking = False
+        self._sources: list[str] = []
+        """Sources of the legs to waypoints that :attr:`_waypoints` has read."""
+        self._waypoints: WaypointTrajectory | None = None
 
     def reference(self, times: Array) -> tuple[Array, Array]:
         """Return position and velocity (K, 3) at ``times``: a descent ends on the ground, not below it."""
@@ -57,6 +60,23 @@ class MissionTrajectory:
             return "climb"
         speed = math.hypot(*self.trajectory.derivatives(np.array([time]), 1)[1, 0].tolist())
         return "fly" if speed > self._settings.hold_speed else "hold"
+
+    def passed(self, time: float) -> list[str]:
+        """Return the sources of the waypoints passed until ``time``, since take-off or the last :meth:`go_on`."""
+        if self._waypoints is None:
+            return []
+        return [source for source, at in zip(self._sources, self._waypoints.passages, strict=False) if at <= time]
+
+    def go_on(self, followed: Trajectory, time: float, legs: Iterator[Leg], speed: float) -> None:
+        """Come to rest as soon as the limits allow, then fly ``legs``, none faster than ``speed``, and land there.
+
+        Without effect while braking for a landing. Other arguments as of :meth:`brake_and_land`.
+        """
+        if self._braking:
+            return
+        self._climb, self.landing_from, self._waypoints = None, math.inf, None
+        along = followed.stop(time).then(lambda t, here: self._along(legs, speed, t, here))
+        self.trajectory = along.then(self._land)
 
     def brake_and_land(self, followed: Trajectory, time: float) -> None:
         """Come to rest as soon as the limits allow, then land there; without effect while braking or landing.
@@ -91,8 +111,14 @@ class MissionTrajectory:
         if isinstance(mission.reference, Lissajous):
             return self._figure(mission.reference, time, here)
         speeds = [step.speed for step in mission.reference.steps if isinstance(step, Speed) and step.speed]
-        limits = replace(self._motion.limits, speed=max([self._motion.speed, mission.reference.speed, *speeds]))
-        return WaypointTrajectory(here, self._legs(legs), limits, start=time, corner=self._motion.corner)
+        return self._along(legs, max([self._motion.speed, mission.reference.speed, *speeds]), time, here)
+
+    def _along(self, legs: Iterator[Leg], speed: float, time: float, here: Array) -> Trajectory:
+        """Return the trajectory along legs that are no faster than ``speed`` (m/s)."""
+        limits = replace(self._motion.limits, speed=speed)
+        self._sources = []
+        self._waypoints = WaypointTrajectory(here, self._legs(legs), limits, start=time, corner=self._motion.corner)
+        return self._waypoints
 
     def _figure(self, figure: Lissajous, time: float, here: Array) -> Trajectory:
         """Return the trajectory to the curve's beginning, along it, and back to ``here``."""
@@ -111,6 +137,8 @@ class MissionTrajectory:
 
     def _legs(self, legs: Iterator[Leg]) -> Iterator[paths.Leg | paths.Circle]:
         for leg in legs:
+            if not isinstance(leg, Land):
+                self._sources.append(leg.source)
             if isinstance(leg, FlyTo):
                 yield paths.Leg(leg.position, leg.speed, leg.hold)
             elif isinstance(leg, Circle):

@@ -4,6 +4,8 @@ The progress is the path parameter of the mission's trajectory (s): its own time
 up. Where the payload falls behind, or the wind would take more thrust than there is, the progress rate drops below 1.
 """
 
+import math
+
 import numpy as np
 
 from idc_controller.arrays import Array
@@ -20,6 +22,8 @@ class Guidance:
 
     rate = 1.0
     """Progress rate in force."""
+    speed_limit = math.inf
+    """Speed (m/s) that is commanded in place of the mission's where that is faster; 0: paused."""
     sight = SightLimit()
     """Limit of the progress rate by sight."""
     detours = 0
@@ -82,6 +86,8 @@ class AdaptiveGuidance(Guidance):
         self._current: ScaledReference | None = None
         self._observed: ScaledReference | None = None
         self._next_rate = self._wanted_rate = 1.0
+        self._is_commanded = False
+        """Whether the speed limit that is commanded lowered the rate that is wanted last."""
         self._tracked: PayloadTrajectory | None = None
         self._deflected = False
         self._restart: tuple[float, float] | None = None
@@ -179,7 +185,9 @@ class AdaptiveGuidance(Guidance):
         wanted, step = min(max((s.lag_at_rest - lag) / s.slowing_lag, 0.0), 1.0), s.rate_step
         if rate_in_wind is not None and rate_in_wind <= wanted:
             wanted, step = rate_in_wind, s.rate_step_in_wind
-        self._wanted_rate, fall = wanted, step
+        commanded = self._commanded_rate(current)
+        self._is_commanded = commanded < wanted
+        self._wanted_rate, fall = (wanted := min(wanted, commanded)), step
         if self._by_sight is not None:
             self._by_sight.compare(current.start, wanted, s.rate_step)
             if self._by_sight.is_least:
@@ -188,12 +196,23 @@ class AdaptiveGuidance(Guidance):
         changed = rate + min(max(wanted - rate, -fall), step)
         return 1.0 if changed > 0.999 else changed
 
+    def _commanded_rate(self, current: ScaledReference) -> float:
+        """Return the largest rate at which the way ahead of ``current`` is flown within the speed limit."""
+        if self.speed_limit == math.inf:
+            return 1.0
+        velocity = current.trajectory.derivatives(current.progress + self._stages, 1)[1]
+        planned = float(np.linalg.norm(velocity, axis=1).max())
+        return min(self.speed_limit / planned, 1.0) if planned > 0.0 else float(self.speed_limit > 0.0)
+
     def _held_up_rate(self) -> float:
-        """Return the rate by which the mission counts as held up: not while it rises, or is slow for what is unseen."""
+        """Return the rate by which the mission counts as held up.
+
+        Not while it rises, nor while it is slow for what is unseen, or because that is commanded.
+        """
         rate = max(self._next_rate, self._wanted_rate)
-        if self._by_sight is None or not self._by_sight.is_least:
-            return rate
-        return max(rate, self.navigator.settings.held_up_rate)
+        if self._is_commanded or (self._by_sight is not None and self._by_sight.is_least):
+            return max(rate, self.navigator.settings.held_up_rate)
+        return rate
 
     @property
     def _interval(self) -> float:

@@ -230,6 +230,7 @@ def test_services_import_nothing_of_what_they_serve():
             "gcs.mavlink",
             "gcs.errors",
             "gcs.mavlink.settings",
+            "idc_controller.rotations_float",
         }
 
 
