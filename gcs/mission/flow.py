@@ -8,6 +8,7 @@ from operator import itemgetter
 
 from gcs.mission.fence import Fence
 from gcs.mission.route import (
+    END,
     Circle,
     Climb,
     Descend,
@@ -106,7 +107,7 @@ def _notes(route: Route, flown: set[int], legs: list[Leg]) -> Iterator[str]:
         first = next(step for step in steps if step.source == legs[0].source)
         if not isinstance(first, Climb):
             yield f"{first.source}: no take-off before it: takes off to {-legs[0].position[2]:g} m first"
-    if isinstance(legs[-1], Land) and legs[-1].source == "end of mission":
+    if isinstance(legs[-1], Land) and legs[-1].source == END:
         yield "end of mission: no landing in the file: returns to the pad and lands"
 
 

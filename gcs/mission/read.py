@@ -1,6 +1,7 @@
 """Read a mission of any of the three formats, with the system it is flown by."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from gcs.config.validate import Key
 from gcs.mission.model import DEFAULT_HOME, Home, Lissajous, Mission
 from gcs.mission.own import named
 from gcs.mission.reasons import merged
+from gcs.mission.route import Route
 from gcs.mission.toml_mission import DEFAULT_SEED, check_with_system, points_route, read_mission_file
 
 _SUFFIXES = {".waypoints": "wpl", ".txt": "wpl", ".plan": "plan", ".json": "plan", ".toml": "toml"}
@@ -62,16 +64,12 @@ def _from_waypoints(path: Path, text: str, system: SystemConfig, speed: float | 
     kind = mission_format(path, text)
     if kind == "toml":
         raise UnusableFile([f"{path}: neither a QGC WPL file nor a QGroundControl plan"])
-    try:
+    with _reasons_merged(path):
         file = read_wpl(path, text) if kind == "wpl" else read_plan(path, text)
         capped = tuple[str, ...]()
         if speed is None:
             speed, capped = _capped("hoverSpeed", file.speed, system)
         route, notes = compile_route(path, file, system, speed)
-    except UnusableFile as error:
-        prefix = f"{path}: "
-        reasons = merged(reason.removeprefix(prefix) for reason in error.reasons)
-        raise UnusableFile([prefix + reason for reason in reasons]) from error
     notes = (*capped, *merged(notes))
     altitude = file.home.altitude
     if altitude is None:
@@ -82,6 +80,36 @@ def _from_waypoints(path: Path, text: str, system: SystemConfig, speed: float | 
     return Mission(
         path.stem, path, DEFAULT_SEED, system, route, home, fence.obstacles, fence.boundary, fence.excluded, notes=notes
     )  # fmt: skip
+
+
+@contextmanager
+def _reasons_merged(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except UnusableFile as error:
+        prefix = f"{path}: "
+        reasons = merged(reason.removeprefix(prefix) for reason in error.reasons)
+        raise UnusableFile([prefix + reason for reason in reasons]) from error
+
+
+def mission_of_plan(path: Path, text: str, world: Mission) -> Mission:
+    """Return the mission of a plan's ``text`` in ``world``, whose system, home and obstacles it is flown by.
+
+    It holds where a mission without a landing ends. Raises :class:`UnusableFile`, its reasons with ``path``.
+    """
+    mission = _from_waypoints(path, text, world.system)
+    assert isinstance(mission.reference, Route)
+    return replace(
+        world,
+        name=path.stem,
+        path=path,
+        reference=replace(mission.reference, holds_at_end=True),
+        obstacles=(*world.obstacles, *mission.obstacles),
+        boundary=mission.boundary,
+        excluded=mission.excluded,
+        faults=(),
+        notes=mission.notes,
+    )
 
 
 def _from_toml(path: Path, config: Path | None, settings: Mapping[str, Any]) -> Mission:

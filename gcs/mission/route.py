@@ -4,12 +4,17 @@ Jumps make a route a program rather than a list: it may be endless, and a positi
 steps before. :meth:`Route.legs` runs it lazily.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 
 Position = tuple[float, float, float]
+
+END = "end of mission"
+"""Source of what follows a mission that does not say how it ends."""
 
 
 # What is flown --------------------------------------------------------------------------------------------------
@@ -180,16 +185,20 @@ class Route:
     steps: tuple[Step, ...]
     speed: float
     resting_altitude: float
+    holds_at_end: bool = False
+    """Whether a route without a landing ends with a hold, as in PX4, and not with a landing at home."""
 
-    def legs(self) -> Iterator[Leg]:
+    def legs(self, start: Position | None = None) -> Iterator[Leg]:
         """Yield the legs in the order of flight, lazily: a route may be endless.
 
         The first is a :class:`TakeOff`; the last, if there is one, a :class:`Land` or :class:`HoldForever`. A route
-        without a landing ends with one at home. Jumps keep their count for the whole flight.
+        without a landing ends with one at home, or with a hold. Jumps keep their count for the whole flight.
+
+        ``start``: in the air there (NED, m), where it does not begin with a take-off; None: on the pad.
 
         Raises :class:`RouteError` for a step that cannot be flown; a :class:`Mission`'s route has been tried.
         """
-        flight = _Flight(self)
+        flight = _Flight(self, start)
         index, taken, lap_at = 0, dict[int, int](), dict[int, int]()
         while index < len(self.steps):
             step = self.steps[index]
@@ -208,7 +217,13 @@ class Route:
             yield from flight.fly(step)
             if flight.ended:
                 return
-        yield from flight.fly(Return("end of mission"))
+        yield from flight.fly(Stay(END, Place()) if self.holds_at_end else Return(END))
+
+    def beginning_at(self, source: str) -> Route:
+        """Return the route that begins with the first step of ``source``."""
+        first = next(index for index, step in enumerate(self.steps) if step.source == source)
+        moved = (replace(s, target=s.target + 1) if isinstance(s, Jump) else s for s in self.steps)
+        return replace(self, steps=(Jump(source, first + 1, None), *moved))
 
     def first_lap(self, limit: int) -> list[Leg]:
         """Return up to ``limit`` legs; of an endless route those before an item is flown for the second time."""
@@ -226,10 +241,10 @@ class Route:
 class _Flight:
     """State of a route that is run: position, speed, whether it flies."""
 
-    def __init__(self, route: Route) -> None:
+    def __init__(self, route: Route, start: Position | None = None) -> None:
         self.route = route
-        self.horizontal = (0.0, 0.0)
-        self.altitude: float | None = None  # None: on the pad
+        self.horizontal = (0.0, 0.0) if start is None else start[:2]
+        self.altitude = None if start is None else -start[2]  # None: on the pad
         self.speed = route.speed
         self.delay = 0.0
         self.progress = 0

@@ -6,10 +6,9 @@ from collections.abc import Sequence
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.services.answer import Answer
-from gcs.mavlink.services.mission_item import UNKNOWN, MissionItem, PlanType
+from gcs.mavlink.services.mission_item import MissionItem, PlanType
 from gcs.mavlink.services.mission_store import TAKEN, MissionAnswer, MissionProgress
 from gcs.mavlink.services.plans import MissionFlight, Plans, refusal
-from gcs.mission.commands import Frame
 from gcs.mission.items import FileHome, ItemError
 from gcs.mission.items import MissionItem as FileItem
 from gcs.mission.model import Home
@@ -118,11 +117,5 @@ class _Rules:
 
 def _as_in_file(item: MissionItem, number: int) -> FileItem:
     """Return an item as mission files have it: places in deg, None for what is not given."""
-    x, y = (None if value == UNKNOWN else float(value) for value in (item.x, item.y))
-    if item.frame != Frame.MISSION:
-        x, y = (None if value is None else value * 1e-7 for value in (x, y))
-    given = [
-        None if value is None or math.isnan(value) else value
-        for value in (item.param1, item.param2, item.param3, item.param4, x, y, item.z)
-    ]
+    given = [None if value is None or math.isnan(value) else value for value in item.parameters]
     return FileItem(f"item {number}", number, item.frame, item.command, tuple(given), item.autocontinue)

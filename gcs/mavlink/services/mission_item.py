@@ -40,6 +40,18 @@ class MissionItem(NamedTuple):
     z: float
     """Altitude (m), above mean sea level or above home by the frame."""
 
+    @property
+    def place(self) -> list[float]:
+        """Latitude and longitude of a global frame (deg)."""
+        return [self.x * 1e-7, self.y * 1e-7]
+
+    @property
+    def parameters(self) -> list[float | None]:
+        """The seven parameters, latitude and longitude in deg; None or NaN for what is not given."""
+        scale = 1.0 if self.frame == mavlink.MAV_FRAME_MISSION else 1e-7
+        x, y = (None if value == UNKNOWN else value * scale for value in (self.x, self.y))
+        return [self.param1, self.param2, self.param3, self.param4, x, y, self.z]
+
 
 def opaque_id(items: Iterable[MissionItem]) -> int:
     """Return the id of a plan by which a ground sees that it has changed; 0 without items.
