@@ -7,9 +7,9 @@ flight has the same bytes.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Protocol
+from typing import Generic, Protocol, TypeVar
 
-from gcs.flight.ground_station import GroundStation
+from gcs.drivers.participant import Participant
 from gcs.mavlink.address import THIS_MACHINE, Address
 from gcs.mavlink.lockstep import LockstepTime, next_call_us
 
@@ -49,10 +49,13 @@ class World(Protocol):
         """Return when :meth:`datagrams_to_send` has something to do next; None: never."""
 
 
-class InProcessLockstep:
+P = TypeVar("P", bound=Participant)
+
+
+class InProcessLockstep(Generic[P]):
     """Lets a world and a ground station fly step by step; several of them may take turns in one process."""
 
-    def __init__(self, world: World, station: GroundStation) -> None:
+    def __init__(self, world: World, station: P) -> None:
         self.world, self.station = world, station
         self._time = LockstepTime(world.time)
 
@@ -79,14 +82,19 @@ class InProcessLockstep:
             world.datagrams_to_send(time.world)
         return world.at_rest
 
-    def step(self, exchanged: Callable[[list[tuple[bytes, Address]]], None] = lambda sent: None) -> None:
+    def step(
+        self,
+        exchanged: Callable[[list[tuple[bytes, Address]]], None] = lambda sent: None,
+        others: Sequence[tuple[bytes, Address]] = (),
+    ) -> None:
         """Make one exchange and go on to the time of the next.
 
-        ``exchanged`` is called in between with what the ground station has sent.
+        ``exchanged`` is called in between with what the ground station has sent. ``others``: datagrams that it receives
+        from elsewhere, each with its sender.
         """
         world, station, time = self.world, self.station, self._time
         world.advance_to(time.world)
-        received = world.datagrams_to_send(time.world)
+        received = [*world.datagrams_to_send(time.world), *others]
         station.resume()
         station.receive_all(received, time.ground)
         sent = station.datagrams_to_send(time.ground)

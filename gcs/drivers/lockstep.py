@@ -7,8 +7,8 @@ from collections.abc import Callable
 from gcs.config.flight_settings import DriverSettings
 from gcs.drivers.connection import LockstepConnection
 from gcs.drivers.interrupt import Interrupt
+from gcs.drivers.participant import Participant
 from gcs.flight.failsafe import Failsafe
-from gcs.flight.ground_station import GroundStation
 from gcs.mavlink.address import Address
 from gcs.mavlink.lockstep import Done, Tick, decode_tick, next_call_us
 
@@ -40,7 +40,7 @@ class Pace:
 
 
 def run_in_lockstep(
-    station: GroundStation,
+    station: Participant,
     connection: LockstepConnection,
     clock_address: Address,
     interrupt: Interrupt,

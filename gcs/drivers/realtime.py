@@ -6,12 +6,12 @@ from collections.abc import Callable
 from gcs.config.flight_settings import DriverSettings
 from gcs.drivers.connection import Connection
 from gcs.drivers.interrupt import Interrupt
+from gcs.drivers.participant import Participant
 from gcs.flight.failsafe import Failsafe
-from gcs.flight.ground_station import GroundStation
 
 
 def run_in_real_time(
-    station: GroundStation,
+    station: Participant,
     connection: Connection,
     interrupt: Interrupt,
     settings: DriverSettings,

@@ -29,6 +29,8 @@ class MissionTrajectory:
         self.start = start
         self.landing_from = math.inf
         """Time at which the final descent begins (s); inf while that is not known."""
+        self._takeoff = ""
+        """Source of the take-off."""
         climb, legs = self._split(mission, position)
         up = WaypointTrajectory(position, climb, self._motion.climb_limits, start=start)
         self._climb: Trajectory | None = up
@@ -38,6 +40,8 @@ class MissionTrajectory:
         self._sources: list[str] = []
         """Sources of the legs to waypoints that :attr:`_waypoints` has read."""
         self._waypoints: WaypointTrajectory | None = None
+        self.landing = ""
+        """Source of the landing, once it is read."""
 
     def reference(self, times: Array) -> tuple[Array, Array]:
         """Return position and velocity (K, 3) at ``times``: a descent ends on the ground, not below it."""
@@ -63,9 +67,16 @@ class MissionTrajectory:
 
     def passed(self, time: float) -> list[str]:
         """Return the sources of the waypoints passed until ``time``, since take-off or the last :meth:`go_on`."""
-        if self._waypoints is None:
-            return []
-        return [source for source, at in zip(self._sources, self._waypoints.passages, strict=False) if at <= time]
+        climbed = [self._takeoff] if self._takeoff and self.phase(time) != "climb" else []
+        reached = [] if self._waypoints is None else [at for at in self._waypoints.passages if at <= time]
+        return [*climbed, *self._sources[: len(reached)]]
+
+    def next_source(self, time: float) -> str | None:
+        """Return the source of the waypoint, or landing, that is flown to at ``time``; None: it holds at the last."""
+        if self._climb is not None and time < self._climb.end:
+            return self._takeoff
+        passed = 0 if self._waypoints is None else sum(at <= time for at in self._waypoints.passages)
+        return self._sources[passed] if passed < len(self._sources) else self.landing or None
 
     def go_on(self, followed: Trajectory, time: float, legs: Iterator[Leg], speed: float) -> None:
         """Come to rest as soon as the limits allow, then fly ``legs``, none faster than ``speed``, and land there.
@@ -75,6 +86,7 @@ class MissionTrajectory:
         if self._braking:
             return
         self._climb, self.landing_from, self._waypoints = None, math.inf, None
+        self._takeoff = self.landing = ""
         along = followed.stop(time).then(lambda t, here: self._along(legs, speed, t, here))
         self.trajectory = along.then(self._land)
 
@@ -101,7 +113,7 @@ class MissionTrajectory:
             first = next(legs)
             if not isinstance(first, TakeOff):
                 raise TypeError(f"a route begins with a take-off, not with {first}")
-            altitude, delay = -first.position[2], first.delay
+            altitude, delay, self._takeoff = -first.position[2], first.delay, first.source
         top = np.array([position[0], position[1], -altitude])
         speed = self._motion.climb_speed
         climb = [paths.Leg(position, speed, delay), paths.Leg(top, speed)] if delay else [paths.Leg(top, speed)]
@@ -148,6 +160,7 @@ class MissionTrajectory:
             elif isinstance(leg, TakeOff):
                 yield paths.Leg(leg.position, self._motion.climb_speed, leg.delay)
             elif isinstance(leg, Land):
+                self.landing = leg.source
                 return
 
     def _land(self, time: float, here: Array) -> Trajectory:

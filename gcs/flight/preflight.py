@@ -9,7 +9,7 @@ from gcs.flight.autopilot_requirements import PARAMETERS, missing
 from gcs.flight.team import Team
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.arrays import Array
-from idc_controller.estimation.measurements import PAYLOAD, Measurement, Position
+from idc_controller.estimation.measurements import PAYLOAD, Measurement, Position, SensorKey
 
 _QUEUE_WAIT = 0.02
 """s for which datagrams usually wait, at least, on a link that is measured."""
@@ -40,6 +40,8 @@ class Preflight:
         """Time (s, team) of the newest position of each source."""
         self._intervals: dict[int, float] = {}
         """Shortest interval of the positions of each source (s): what is lost makes others longer."""
+        self.latest: dict[SensorKey, Measurement] = {}
+        """The newest measurements of each source."""
         self._positions: dict[int, list[Array]] = {source: [] for source in (PAYLOAD, *range(len(team.links)))}
 
     def connect(self, now: float) -> bool:
@@ -71,6 +73,8 @@ class Preflight:
 
     def add(self, measurement: Measurement) -> None:
         """Take telemetry of a vehicle or of the payload unit on the ground."""
+        if measurement.has_pose:
+            self.latest[measurement.source, type(measurement)] = measurement
         if isinstance(measurement, Position) and measurement.has_pose:
             source, time = measurement.source, measurement.time
             interval = time - self._newest.get(source, math.nan)

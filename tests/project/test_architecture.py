@@ -52,6 +52,10 @@ ALLOWED = {
         "idc_controller.guidance idc_controller.model idc_controller.paper idc_controller.safety "
         "idc_controller.trajectory"
     ),
+    "gcs.serve": (
+        "gcs.config gcs.flight gcs.mavlink gcs.mission idc_controller.control idc_controller.estimation "
+        "idc_controller.trajectory"
+    ),
     "gcs.view": "gcs.mavlink gcs.mission gcs.record idc_controller.geometry",
     "idc_controller.control": (
         "idc_controller.estimation idc_controller.guidance idc_controller.model idc_controller.qp "

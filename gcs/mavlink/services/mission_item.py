@@ -41,9 +41,9 @@ class MissionItem(NamedTuple):
     """Altitude (m), above mean sea level or above home by the frame."""
 
     @property
-    def place(self) -> list[float]:
+    def place(self) -> tuple[float, float]:
         """Latitude and longitude of a global frame (deg)."""
-        return [self.x * 1e-7, self.y * 1e-7]
+        return self.x * 1e-7, self.y * 1e-7
 
     @property
     def parameters(self) -> list[float | None]:

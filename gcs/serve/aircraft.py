@@ -1,0 +1,307 @@
+"""The team as the MAVLink services command it: its session carries an order out, or it is refused with the reason."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gcs.flight.phase import Phase
+from gcs.mavlink import px4
+from gcs.mavlink.services.aircraft import Orbit, Place, Reposition, Sender, Turn
+from gcs.mavlink.services.answer import ACCEPTED, Answer, denied, rejected_for_now
+from gcs.mavlink.services.local_frame import LocalFrame
+from gcs.mavlink.services.mission_item import MissionItem, PlanType
+from gcs.mission.items import FARTHEST
+from gcs.mission.route import Position, Route
+from gcs.serve.plan_file import label, mission_of
+from gcs.serve.session import TeamSession
+
+if TYPE_CHECKING:
+    from gcs.mavlink.services.parameter_table import ParameterTable
+
+TAKEOFF_ALTITUDE = px4.PARAM_TAKEOFF_ALTITUDE
+
+
+class TeamAircraft:
+    """Four vehicles and their load as one multicopter, as PX4 flies one; its position is the payload's."""
+
+    modes: Sequence[int] = (px4.MODE_TAKEOFF, px4.MODE_HOLD, px4.MODE_MISSION, px4.MODE_RETURN, px4.MODE_LAND)
+    obeys_broadcasts = True
+
+    def __init__(self, session: TeamSession, parameters: ParameterTable) -> None:
+        self.session, self._parameters = session, parameters
+        self.base = session.world
+        """System, home and obstacles, without what was uploaded."""
+        self._frame = LocalFrame(session.world.home)
+        self._plans: dict[PlanType, Sequence[MissionItem]] = dict.fromkeys(PlanType, ())
+        self._labels: list[str] = []
+        self._on_reached: Callable[[int], None] = lambda number: None
+        self._reached: list[str] = []
+        """Sources of the waypoints that were reported."""
+        self._finished = False
+
+    # Arming
+
+    def arming_problem(self, now: float) -> str | None:
+        """Return why the team cannot be armed; None: it can, or is."""
+        session = self.session
+        if session.is_armed or session.flight.is_ready:
+            return None
+        missing = session.flight.system.preflight.missing
+        return missing or session.last_reason or "the checks before take-off are running"
+
+    def arm(self, now: float, force: bool = False) -> Answer:
+        """Begin a flight; the vehicles are armed when the checks before take-off, never skipped, have passed."""
+        if self.session.is_armed:
+            return ACCEPTED
+        if (problem := self.arming_problem(now)) is not None:
+            return rejected_for_now(f"Arming denied: {problem}")
+        self.session.arm()
+        if self.session.mode == px4.MODE_MISSION:  # chosen on the ground: arming begins it, as in PX4
+            return self._begin_mission()
+        return ACCEPTED
+
+    def disarm(self, sender: Sender, now: float, force: bool = False) -> Answer:
+        """Disarm on the ground; in the air never: the load would fall."""
+        session = self.session
+        if not session.is_armed:
+            return ACCEPTED
+        if session.flight.phase is not Phase.ARM:
+            return denied("Disarming denied: in the air" if session.in_air else "Disarming denied: not armed yet")
+        session.disarm()
+        return ACCEPTED
+
+    # Modes and orders
+
+    def enter_mode(self, custom_mode: int, sender: Sender, now: float) -> Answer:
+        """Enter one of :attr:`modes`."""
+        match custom_mode:
+            case px4.MODE_TAKEOFF:
+                return self.take_off(math.nan, now)
+            case px4.MODE_HOLD:
+                return self.pause(now)
+            case px4.MODE_MISSION:
+                return self.resume(now)
+            case px4.MODE_RETURN:
+                return self._return()
+            case px4.MODE_LAND:
+                return self._land()
+        return denied(f"Mode denied: the team does not fly {px4.mode_name(custom_mode)}")
+
+    def take_off(self, altitude: float, now: float) -> Answer:
+        """Take off to ``altitude`` (m above mean sea level; NaN: the parameter's height above home), and hold there."""
+        session, system = self.session, self.base.system
+        if not session.is_armed:
+            return rejected_for_now("Takeoff denied: not armed")
+        if session.in_air or session.flight.may_take_off:
+            return rejected_for_now("Takeoff denied: it has taken off already")
+        height = altitude - self.base.home.altitude
+        if math.isnan(height):
+            height = self._parameters[TAKEOFF_ALTITUDE]
+        lowest = system.resting_altitude + system.guidance.navigator.ground_clearance
+        if (problem := self._why_not((0.0, 0.0, -height))) is not None:
+            return denied(f"Takeoff denied: {problem}", 7)
+        session.take_off(max(height, lowest))
+        return ACCEPTED
+
+    def start_mission(self, first: int, now: float) -> Answer:
+        """Fly the mission from item ``first`` on; as PX4 it arms for it."""
+        if first:
+            if (answer := self.set_current_item(first, now)) != ACCEPTED:
+                return answer
+        else:
+            self.session.first = ""
+        if not self.session.is_armed and (answer := self.arm(now)) != ACCEPTED:
+            return answer
+        return self._begin_mission()
+
+    def pause(self, now: float) -> Answer:
+        """Hold; the mission's current item stays."""
+        session = self.session
+        if session.may_order:
+            session.hold()
+        elif session.in_air:
+            return self._refused("Hold")
+        else:
+            session.mode = px4.MODE_HOLD
+        return ACCEPTED
+
+    def resume(self, now: float) -> Answer:
+        """Go on with the mission; on the ground it begins when the team is armed."""
+        if not self.session.is_armed and self.session.mission is not None:
+            self.session.mode = px4.MODE_MISSION
+            return ACCEPTED
+        return self._begin_mission()
+
+    def reposition(self, goal: Reposition, now: float) -> Answer:
+        """Fly to a place round what is known, and hold there."""
+        session = self.session
+        if not session.may_order:
+            return self._refused("Reposition")
+        here = session.position
+        place = self._local(Place(*goal[:3]), here)
+        if (problem := self._why_not(place)) is not None:
+            return denied(f"Reposition denied: {problem}")
+        limit = self.base.system.motion.speed_max
+        if not (math.isnan(goal.speed) or 0.0 < goal.speed <= limit):
+            return denied(f"Reposition denied: {goal.speed:g} m/s, the team flies {limit:g} m/s at most", 1)
+        session.go_to(place, None if math.isnan(goal.speed) else goal.speed)
+        return ACCEPTED
+
+    def change_speed(self, speed: float, now: float) -> Answer:
+        """Fly with another speed (m/s) from now on."""
+        limit = self.base.system.motion.speed_max
+        if not 0.0 < speed <= limit:
+            return denied(f"Speed change denied: {speed:g} m/s is outside 0 .. {limit:g} m/s", 2)
+        self.session.change_speed(speed)
+        return ACCEPTED
+
+    def turn(self, turn: Turn, now: float) -> Answer:
+        """Refuse."""
+        return denied("Turn denied: the payload keeps its heading")
+
+    def orbit(self, orbit: Orbit, now: float) -> Answer:
+        """Refuse."""
+        return denied("Orbit denied: the payload keeps its heading; fly NAV_LOITER_TURNS in a mission")
+
+    def set_home(self, place: Place | None, now: float) -> Answer:
+        """Refuse."""
+        return denied("Home denied: it is the origin of the vehicles' common local frame")
+
+    def _begin_mission(self) -> Answer:
+        session = self.session
+        if session.mission is None:
+            return rejected_for_now("Mission denied: no mission")
+        if session.in_air and not session.may_order:
+            return self._refused("Mission")
+        if not session.in_air and session.flight.may_take_off:
+            return rejected_for_now("Mission denied: it has taken off already")
+        if self._finished or not session.in_air:
+            self._reached, self._finished = [], False
+        session.fly_mission()
+        return ACCEPTED
+
+    def _return(self) -> Answer:
+        session = self.session
+        if not session.may_order:
+            return self._refused("Return")
+        north, east, _ = session.position
+        rally = (self._frame.local(*point.place, point.z) for point in self._plans[PlanType.RALLY])
+        points = [(0.0, 0.0), *(position[:2] for position in rally)]
+        session.land(min(points, key=lambda point: math.dist(point, (north, east))))
+        return ACCEPTED
+
+    def _land(self) -> Answer:
+        if not self.session.may_order:
+            return self._refused("Land")
+        self.session.land()
+        return ACCEPTED
+
+    def _refused(self, what: str) -> Answer:
+        """Return the refusal of an order that the phase of the flight does not allow."""
+        session = self.session
+        reason = "not in the air"
+        if session.in_air:
+            reason = session.flight.reason or f"in phase {session.flight.phase.value}"
+        return rejected_for_now(f"{what} denied: {reason}")
+
+    def _local(self, place: Place, here: Position) -> Position:
+        """Return a place (NED, m); what is not given is as it is ``here``."""
+        altitude = self.base.home.altitude - here[2] if math.isnan(place.altitude) else place.altitude
+        if not (math.isfinite(place.latitude) and math.isfinite(place.longitude)):
+            return here[0], here[1], self.base.home.altitude - altitude
+        return self._frame.local(place.latitude, place.longitude, altitude)
+
+    def _why_not(self, place: Position) -> str | None:
+        """Return why the payload may not be flown to a place; None: it may."""
+        system = self.base.system
+        lowest = system.resting_altitude + system.guidance.navigator.ground_clearance
+        if not -place[2] >= lowest - 1e-3:
+            return f"{-place[2]:.1f} m above home is lower than {lowest:.1f} m"
+        if math.dist(place, (0.0, 0.0, 0.0)) > FARTHEST:
+            return f"farther than {FARTHEST:g} m from home"
+        area = self.session.world.area
+        return None if area is None or area.contains(np.array([place]))[0] else "outside the fence"
+
+    # The mission
+
+    @property
+    def plans(self) -> dict[PlanType, Sequence[MissionItem]]:
+        """The plans that are in effect."""
+        return self._plans
+
+    def take_mission(self, items: Sequence[MissionItem], current: int, on_reached: Callable[[int], None]) -> Answer:
+        """Have another mission, of which ``current`` is flown first; ``on_reached`` is called with each item done."""
+        session = self.session
+        if session.flies_mission and session.in_air:
+            return rejected_for_now("Mission refused: the one before is being flown; hold first")
+        self._plans[PlanType.MISSION] = tuple(items)
+        session.mission = mission_of(self._plans, self.base) if items else None
+        self._labels = [label(item, number) for number, item in enumerate(items)]
+        self._on_reached, self._reached, self._finished = on_reached, [], False
+        session.first = self._labels[current] if current else ""
+        session.changes += 1
+        return ACCEPTED
+
+    def take_fence(self, items: Sequence[MissionItem]) -> None:
+        """Have another fence from the next arming on."""
+        self._plans[PlanType.FENCE] = tuple(items)
+        self.session.world = mission_of(self._plans, self.base)
+        if self.session.mission is not None:
+            self.session.mission = self.session.world
+
+    def take_rally_points(self, items: Sequence[MissionItem]) -> None:
+        """Have other rally points, places where a return may land, from now on."""
+        self._plans[PlanType.RALLY] = tuple(items)
+
+    def set_current_item(self, index: int, now: float) -> Answer:
+        """Go on with item ``index``."""
+        session = self.session
+        if session.mission is None or not 0 <= index < len(self._labels):
+            return denied(f"Mission item denied: {index} of {len(self._labels)} items")
+        assert isinstance(session.mission.reference, Route)
+        flown = {step.source for step in session.mission.reference.steps}
+        after = next((name for name in self._labels[index:] if name in flown), None)
+        if after is None:
+            return denied(f"Mission item denied: after {self._labels[index]} nothing is flown")
+        if session.in_air and session.flies_mission:
+            if not session.may_order:
+                return self._refused("Mission item")
+            session.first = after
+            session.fly_mission(anew=True)
+        session.first = after
+        return ACCEPTED
+
+    @property
+    def current_item(self) -> int:
+        """The item of the mission that is flown to, or will be."""
+        done = self._index_of(self._reached[-1]) + 1 if self._reached else self._index_of(self.session.first)
+        return min(max(done, 0), max(len(self._labels) - 1, 0))
+
+    @property
+    def mission_finished(self) -> bool:
+        """Whether all items have been done."""
+        return self._finished
+
+    @property
+    def mission_active(self) -> bool:
+        """Whether the mode that flies the mission is active."""
+        return self.session.mode == px4.MODE_MISSION and self.session.is_armed
+
+    def _index_of(self, source: str) -> int:
+        return self._labels.index(source) if source in self._labels else 0
+
+    def report_reached(self) -> None:
+        """Report the items that were reached since the last call."""
+        session = self.session
+        if not session.flies_mission:
+            return
+        passed = session.passed
+        for source in passed[len(self._reached) :]:
+            self._reached.append(source)
+            if source in self._labels:
+                self._on_reached(self._labels.index(source))
+        self._finished = session.is_mission_done

@@ -1,0 +1,300 @@
+"""The team between flights and in flight: which ground station flies now, and what it was ordered to do."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import Protocol
+
+from gcs.flight.alarms import Alarm
+from gcs.flight.failsafe import Failsafe
+from gcs.flight.flight import Flight
+from gcs.flight.ground_station import GroundStation
+from gcs.flight.phase import CONTROLLED, IN_AIR, Phase
+from gcs.mavlink import px4
+from gcs.mission.model import Mission
+from gcs.mission.route import Climb, FlyTo, HoldForever, Land, Leg, Place, Position, Route, Stay
+
+PREFLIGHT_DISARM = 10.0
+"""s for which armed vehicles wait for a take-off, as COM_DISARM_PRFLT of PX4."""
+_ON_GROUND = (Phase.CONNECT, Phase.CHECK, Phase.ARM)
+
+
+class OpenFlight(Protocol):
+    """A ground station with its records."""
+
+    @property
+    def station(self) -> GroundStation:
+        """The ground station."""
+
+    def close(self) -> str:
+        """Close the records; return what is to be said of them, empty: there are none."""
+
+
+class TeamSession:
+    """One ground station after the other: one that waits, then one for each flight, from arming to disarming.
+
+    Times are the ground's (s), positions NED (m).
+    """
+
+    def __init__(self, world: Mission, open_flight: Callable[[Mission, bool], OpenFlight]) -> None:
+        """``open_flight`` opens a flight of a mission, with records or without."""
+        self.world = world
+        """System, home and obstacles of every flight, and the fence of the plans that were uploaded."""
+        self._open_flight = open_flight
+        self._opened = open_flight(world, False)
+        self._wait()
+        self.mode = px4.MODE_HOLD
+        """The custom mode that was ordered last."""
+        self.mission: Mission | None = None
+        """The mission that was uploaded; None: there is none."""
+        self.first = ""
+        """Source of the item at which the mission is begun, or goes on; empty: its beginning."""
+        self.speed: float | None = None
+        """Speed that was ordered in place of the mission's (m/s); None: none."""
+        self.changes = 0
+        """Rises with every change that is to be reported."""
+        self.notices: list[str] = []
+        """What is to be said to operators, not sent yet."""
+        self._alarms = 0
+        self._cleared_until = math.inf
+        self._planned_speed = 0.0
+        self._flies_mission = False
+        self._passed: list[str] = []
+        """Sources of what was reached of the mission before the last order."""
+        self._phase = Phase.CONNECT
+        self._now = 0.0
+        self.closing = False
+        """True if no further flight is to begin."""
+        self.last_reason = ""
+        """Why the last flight did not begin; empty: it did, or none was tried."""
+
+    @property
+    def station(self) -> GroundStation:
+        """The ground station that is connected with the vehicles now."""
+        return self._opened.station
+
+    @property
+    def flight(self) -> Flight:
+        """Its flight."""
+        return self.station.flight
+
+    @property
+    def in_air(self) -> bool:
+        """True from spool-up until the rotors have stopped."""
+        return self.flight.phase in CONTROLLED or self.flight.phase is Phase.AUTONOMOUS_LANDING
+
+    @property
+    def is_armed(self) -> bool:
+        """True while vehicles are armed, or about to be."""
+        return self.flight.may_arm and not self.flight.ended
+
+    @property
+    def may_order(self) -> bool:
+        """True while the payload can be ordered elsewhere: in the air, before its landing, without a failsafe."""
+        return self.flight.phase in IN_AIR and self.flight.phase is not Phase.LAND and not self.flight.reason
+
+    @property
+    def is_paused(self) -> bool:
+        """True while the mission is paused on its way."""
+        return self.flight.system.guidance.speed_limit == 0.0
+
+    @property
+    def flies_mission(self) -> bool:
+        """True while the mission is flown, be it paused."""
+        return self._flies_mission
+
+    @property
+    def ended(self) -> bool:
+        """True if it is closing and the payload is on the ground."""
+        return self.closing and (not self.is_armed)
+
+    @property
+    def position(self) -> Position:
+        """Where the payload is planned to be now."""
+        flight = self.flight
+        assert flight.mission_trajectory is not None
+        progress = flight.system.guidance.progress(flight.time)
+        north, east, down = flight.mission_trajectory.trajectory.position(progress).tolist()
+        return north, east, down
+
+    @property
+    def passed(self) -> list[str]:
+        """Sources of the waypoints of the mission that were reached, in the order of the flight."""
+        trajectory = self.flight.mission_trajectory
+        if not self._flies_mission or trajectory is None:
+            return self._passed
+        return [*self._passed, *trajectory.passed(self._progress), *([trajectory.landing] if self._has_landed else [])]
+
+    @property
+    def next_source(self) -> str | None:
+        """Source of the waypoint that is flown to; None: there is none any more."""
+        trajectory = self.flight.mission_trajectory
+        return None if trajectory is None else trajectory.next_source(self._progress)
+
+    @property
+    def is_mission_done(self) -> bool:
+        """True if the whole mission was flown, and at its end landed or held for good."""
+        return self._flies_mission and (self._has_landed or self.next_source is None)
+
+    @property
+    def _has_landed(self) -> bool:
+        return self.flight.phase in (Phase.SPOOL_DOWN, Phase.DISARM, Phase.ENDED) and not self.flight.reason
+
+    @property
+    def _progress(self) -> float:
+        return self.flight.system.guidance.progress(self.flight.time)
+
+    # Orders
+
+    def arm(self) -> None:
+        """Begin a flight: connect anew, check, arm, and wait for a take-off."""
+        self._opened.close()
+        self._opened = self._open_flight(self.world, True)
+        self.flight.may_take_off = False
+        self._alarms, self._cleared_until = 0, math.inf
+        self.changes += 1
+
+    def take_off(self, altitude: float) -> None:
+        """Take off to ``altitude`` (m above home), and hold there."""
+        steps = (Climb("take-off", Place(None, altitude)), Stay("take-off", Place()))
+        self._begin(Route(steps, self._cruise_speed(), self.world.system.resting_altitude))
+        self._set_mode(px4.MODE_TAKEOFF)
+
+    def fly_mission(self, *, anew: bool = False) -> None:
+        """Fly the mission from the item that was chosen on: take off for it, go on with it, or begin it in the air.
+
+        ``anew``: leave the item that is flown to.
+        """
+        assert self.mission is not None and isinstance(self.mission.reference, Route)
+        route = self.mission.reference
+        if self.first:
+            route = route.beginning_at(self.first)
+        if self.speed is not None:
+            route = replace(route, speed=self.speed)
+        if not self.in_air:
+            self._begin(route)
+        elif self._flies_mission and self.is_paused and not anew:
+            self._limit_speed()
+        else:
+            self._passed = self.passed
+            self._fly(route.legs(self.position), route.speed)
+        self._flies_mission = True
+        self._set_mode(px4.MODE_MISSION)
+
+    def hold(self) -> None:
+        """Come to rest on the way, and hold."""
+        self.flight.system.guidance.speed_limit = 0.0
+        self._set_mode(px4.MODE_HOLD)
+
+    def go_to(self, place: Position, speed: float | None) -> None:
+        """Fly to a place, and hold there."""
+        legs: list[Leg] = [FlyTo(place, speed or self._cruise_speed(), "go to"), HoldForever(place, "go to")]
+        self._leave_mission(legs)
+        self._set_mode(px4.MODE_HOLD)
+
+    def land(self, over: tuple[float, float] | None = None) -> None:
+        """Land ``over`` a place (north, east), after a flight at the present altitude; None: where it is."""
+        legs: list[Leg] = []
+        if over is not None:
+            legs.append(FlyTo((*over, self.position[2]), self._cruise_speed(), "return"))
+        self._leave_mission([*legs, Land((0.0, 0.0, 0.0), "land")])
+        self._set_mode(px4.MODE_LAND if over is None else px4.MODE_RETURN)
+
+    def change_speed(self, speed: float) -> None:
+        """Fly with another ``speed`` (m/s) from now on; faster than planned, from the next rest on."""
+        self.speed = speed
+        if not self.may_order or self.is_paused:
+            return
+        if self._flies_mission and speed > self._planned_speed:
+            self.first = self.next_source or ""
+            self.fly_mission(anew=True)
+        else:
+            self._limit_speed()
+
+    def disarm(self) -> None:
+        """Stop the rotors on the ground."""
+        self.flight.stand_down()
+
+    def raise_failsafe(self, now: float, failsafe: Failsafe, reason: str) -> None:
+        """Land what is in the air, and begin no flight any more."""
+        self.closing = True
+        if self.is_armed:
+            self.station.raise_failsafe(now, failsafe, reason)
+
+    def _begin(self, route: Route) -> None:
+        self._planned_speed = route.speed
+        self.flight.mission = replace(self.mission or self.world, reference=route)
+        self.flight.may_take_off = True
+
+    def _leave_mission(self, legs: list[Leg]) -> None:
+        if self._flies_mission:
+            self._passed, self.first = self.passed, self.next_source or ""
+            self._flies_mission = False
+        self._fly(iter(legs), max([self._cruise_speed(), *(leg.speed for leg in legs if isinstance(leg, FlyTo))]))
+
+    def _fly(self, legs: Iterator[Leg], speed: float) -> None:
+        self._planned_speed = speed
+        self.flight.fly(legs, speed)
+        self.flight.system.guidance.speed_limit = math.inf
+        self.changes += 1
+
+    def _limit_speed(self) -> None:
+        self.flight.system.guidance.speed_limit = math.inf if self.speed is None else self.speed
+
+    def _cruise_speed(self) -> float:
+        return self.world.system.motion.speed if self.speed is None else self.speed
+
+    def _set_mode(self, mode: int) -> None:
+        self.mode = mode
+        self.changes += 1
+
+    def _reset(self) -> None:
+        self.first, self.speed, self._alarms = "", None, 0
+        self._flies_mission, self._passed = False, []
+
+    def _wait(self) -> None:
+        self.flight.may_arm = self.flight.may_take_off = False
+
+    # Time
+
+    def step(self, now: float) -> None:
+        """Follow the ground station: report alarms, end what has ended, disarm what waits for too long."""
+        flight, self._now = self.flight, now
+        self._take_alarms(flight)
+        if flight.phase is not self._phase:
+            self._phase = flight.phase
+            self.changes += 1
+        if flight.phase is Phase.ARM and not flight.may_take_off and flight.system.team.armed:
+            if self._cleared_until == math.inf:
+                self._cleared_until = now + PREFLIGHT_DISARM
+            elif now > self._cleared_until:
+                self.notices.append(f"Disarmed: no take-off for {PREFLIGHT_DISARM:g} s")
+                flight.stand_down()
+        if self.mode == px4.MODE_TAKEOFF and flight.phase is Phase.HOLD:
+            self._set_mode(px4.MODE_HOLD)
+        if flight.ended and not self.closing:
+            self._end(flight)
+
+    def _take_alarms(self, flight: Flight) -> None:
+        alarms: list[Alarm] = flight.failsafes.alarms.alarms
+        for alarm in alarms[self._alarms :]:
+            if flight.may_arm:
+                self.notices.append(f"{alarm.source}: {alarm.text or alarm.code.code}")
+        self._alarms = len(alarms)
+
+    def _end(self, flight: Flight) -> None:
+        """Close the records of a flight that has ended, and wait for the next one."""
+        said = self._opened.close()
+        if flight.may_arm:
+            self.notices.append(said or "Flight ended")
+        self.last_reason = flight.reason
+        self._opened = self._open_flight(self.world, False)
+        self._wait()
+        self._reset()
+        self._set_mode(px4.MODE_HOLD)
+
+    def close(self) -> str:
+        """Close the records."""
+        return self._opened.close()
