@@ -18,6 +18,7 @@ from idc_controller.errors import IdcError
 
 COMMANDS = {
     "fly": "fly a mission",
+    "serve": "present the team as one aircraft to any ground station",
     "check": "say what will be flown, or why not",
     "missions": "list the missions that come with the package",
     "report": "draw what happened in a run",
@@ -34,6 +35,7 @@ The ground station of cooplift: UAVs that carry one payload together.
   gcs missions                              the missions that come with the package
   gcs check delivery                        what will be flown, or every reason why not
   gcs fly figure_eight                      flies it with a simulated swarm of its own
+  gcs serve --sim                           a team that QGroundControl, MAVSDK or MAVProxy flies as one aircraft
   gcs report runs/figure-eight-1            writes the page that shows what happened
   gcs export runs/figure-eight-1 --ulog     writes it as ULog files, one for each vehicle and one for the payload
   gcs film runs/figure-eight-1              makes a film of it

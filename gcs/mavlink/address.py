@@ -15,6 +15,8 @@ SDK_PORT = 14540
 """Where an SDK listens for one vehicle, on the port that follows for the next one."""
 GROUND_PORT = 14550
 """Where a ground station listens for all vehicles."""
+TEAM_PORT = 18570
+"""Where a team that is served as one aircraft listens for ground stations."""
 THIS_MACHINE = "127.0.0.1"
 
 _URL = re.compile(r"^(?P<scheme>udp|udpout|udpin):(?://)?(?P<host>[^:/\s]+):(?P<port>\d{1,5})/?$")
@@ -44,6 +46,14 @@ def parse_url(text: str) -> ConnectionUrl:
         raise UnusableInput(f"--connect {text}: expected udp://HOST:PORT, udpout://HOST:PORT or udpin://HOST:PORT")
     host = resolved(match["host"], f"--connect {text}")
     return ConnectionUrl(host, int(match["port"]), match["scheme"] == "udpin")
+
+
+def parse_address(text: str, option: str) -> Address:
+    """Return the address of ``HOST:PORT``. Raises :class:`UnusableInput` that names ``option`` for anything else."""
+    host, colon, port = text.rpartition(":")
+    if not (host and colon and port.isdecimal() and 1 <= int(port) <= 65535):
+        raise UnusableInput(f"{option} {text}: expected HOST:PORT")
+    return resolved(host, f"{option} {text}"), int(port)
 
 
 def resolved(host: str, option: str) -> str:

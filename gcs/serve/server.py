@@ -38,6 +38,7 @@ from gcs.serve.session import OpenFlight, TeamSession
 
 TEAM_SYSTEM = 101
 """System id of the team: behind its payload unit, above every vehicle's."""
+_MISSION_CURRENT = px4.AUTOPILOT_COMPONENT, mavlink.MAVLINK_MSG_ID_MISSION_CURRENT
 _OWN = TEAM_SYSTEM, px4.AUTOPILOT_COMPONENT
 
 
@@ -72,15 +73,10 @@ class TeamServer:
             for number, build in (status_messages.MESSAGES | motion_messages.MESSAGES).items()
         }
         self._decoder = Codec(*_OWN)
-        control, clock = _Everybody(), float
-        plans = Plans(self.aircraft, TeamPlanRules(self.aircraft))
-        self._peers = Peers(lambda address, _: self._new_peer(address), dict.fromkeys(clients, True), link)
-        self._missions = MissionServer(TEAM_SYSTEM, plans, control, self._peers, link.missions)
-        self.builders.update(self._missions.builders)
-        self._intervals = {
+        self._intervals: dict[MessageKey, float] = {
             key: getattr(link.intervals, setting.name)
             for setting in fields(link.intervals)
-            if (key := (px4.AUTOPILOT_COMPONENT, _message_id(setting.name))) in self.builders
+            if (key := (px4.AUTOPILOT_COMPONENT, _message_id(setting.name))) in {*self.builders, _MISSION_CURRENT}
         } | dict.fromkeys(
             [
                 (px4.AUTOPILOT_COMPONENT, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION),
@@ -88,6 +84,11 @@ class TeamServer:
             ],
             1.0 / config.rates.control,
         )
+        control, clock = _Everybody(), float
+        plans = Plans(self.aircraft, TeamPlanRules(self.aircraft))
+        self._peers = Peers(lambda address, _: self._new_peer(address), dict.fromkeys(clients, True), link)
+        self._missions = MissionServer(TEAM_SYSTEM, plans, control, self._peers, link.missions)
+        self.builders.update(self._missions.builders)
         self.dispatcher = Dispatcher()
         """All that the team does for others."""
         LinkServices(clock).register(self.dispatcher)
