@@ -9,6 +9,10 @@ class UnwritableRecord(GcsError):
     """A record of what has been done cannot be written: exit code 3."""
 
 
+class OrderRefused(GcsError):
+    """An order to a team that cannot be carried out now; ``str(error)`` says why."""
+
+
 class UnusableInput(GcsError):
     """A mission, configuration or argument that cannot be used: exit code 2.
 

@@ -72,7 +72,7 @@ def fly(
             once.
     """
     tables = _fault_tables(faults)
-    checked = _with_faults(_mission(mission, seed, config, settings or {}, limits), tables)
+    checked = _with_faults(as_flown(mission, seed, config, settings or {}, limits), tables)
     if controller not in CONTROLLERS:
         raise UnusableInput(f"controller '{controller}' is none of {', '.join(CONTROLLERS)}")
     for note in (*checked.notes, *preflight(checked).lines):
@@ -116,7 +116,7 @@ def _call(mission: Path | str | Mission, **options: Any) -> str:
     return f"gcs.fly({'mission' if isinstance(mission, Mission) else repr(str(mission))}{given})"
 
 
-def _mission(
+def as_flown(
     mission: Path | str | Mission,
     seed: int | None,
     config: Path | str | None,

@@ -194,7 +194,7 @@ def flight_result(
     ended_at = flight.failsafes.time
     ground = GroundReport(begun, flight.completed, flight.landed, interrupted, flight.reason, ended_at)
     truth_ends = all(file.name != TRUTH for file in incomplete)
-    targets = targets_of(mission) if flight.completed and truth_ends else None
+    targets = targets_of(mission) if flight.completed and truth_ends and not flight.is_redirected else None
     ended = verdict(records, ground, targets, limits["arrival"], landing_on_record=truth_ends)
     summary = summarise(
         records,

@@ -47,10 +47,14 @@ class Flight:
         self.phase = Phase.CONNECT
         self.may_arm = self.may_take_off = True
         """Whether it goes on from the check before take-off, and with armed vehicles from the ground, by itself."""
+        self.is_redirected = False
+        """True if orders in flight have taken the place of the mission."""
         self.is_ready = False
         """True while the check before take-off is passed."""
         self.time = 0.0
         """Team time of the last control step."""
+        self.started = math.nan
+        """Team time of the first control step; nan before."""
         self.ground_time = 0.0
         """Ground time of the last control step."""
         self.last_record: StepRecord | None = None
@@ -168,6 +172,7 @@ class Flight:
         guidance, time = self.system.guidance, self.time
         followed, progress = guidance.stopping_trajectory(time, self.mission_trajectory.trajectory)
         self.mission_trajectory.go_on(followed, progress, legs, speed)
+        self.is_redirected = True
         guidance.restart(time, progress)
 
     def stand_down(self) -> None:
@@ -192,6 +197,8 @@ class Flight:
             The set-points, None: nothing is to be sent; and what was estimated and decided, if anything was.
         """
         self.time, self.ground_time = time, now
+        if math.isnan(self.started):
+            self.started = time
         self.system.steps.add(time)
         self._evaluate(Check.STEP, time, now)
         if self.phase in IN_AIR:

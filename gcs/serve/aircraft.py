@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +16,7 @@ from gcs.mavlink.services.answer import ACCEPTED, Answer, denied, rejected_for_n
 from gcs.mavlink.services.local_frame import LocalFrame
 from gcs.mavlink.services.mission_item import MissionItem, PlanType
 from gcs.mission.items import FARTHEST
+from gcs.mission.model import Mission
 from gcs.mission.route import Position, Route
 from gcs.serve.plan_file import label, mission_of
 from gcs.serve.session import TeamSession
@@ -33,7 +35,7 @@ class TeamAircraft:
 
     def __init__(self, session: TeamSession, parameters: ParameterTable) -> None:
         self.session, self._parameters = session, parameters
-        self.base = session.world
+        self.base = session.world = replace(session.world, name="team", limits=None, faults=())
         """System, home and obstacles, without what was uploaded."""
         self._frame = LocalFrame(session.world.home)
         self._plans: dict[PlanType, Sequence[MissionItem]] = dict.fromkeys(PlanType, ())
@@ -123,7 +125,7 @@ class TeamAircraft:
         session = self.session
         if session.may_order:
             session.hold()
-        elif session.in_air:
+        elif session.is_armed:
             return self._refused("Hold")
         else:
             session.mode = px4.MODE_HOLD
@@ -177,6 +179,8 @@ class TeamAircraft:
             return rejected_for_now("Mission denied: no mission")
         if session.in_air and not session.may_order:
             return self._refused("Mission")
+        if session.in_air and not isinstance(session.mission.reference, Route):
+            return denied("Mission denied: a curve begins on the ground")
         if not session.in_air and session.flight.may_take_off:
             return rejected_for_now("Mission denied: it has taken off already")
         if self._finished or not session.in_air:
@@ -239,12 +243,30 @@ class TeamAircraft:
         if session.flies_mission and session.in_air:
             return rejected_for_now("Mission refused: the one before is being flown; hold first")
         self._plans[PlanType.MISSION] = tuple(items)
-        session.mission = mission_of(self._plans, self.base) if items else None
-        self._labels = [label(item, number) for number, item in enumerate(items)]
-        self._on_reached, self._reached, self._finished = on_reached, [], False
-        session.first = self._labels[current] if current else ""
-        session.changes += 1
+        labels = [label(item, number) for number, item in enumerate(items)]
+        self._take(mission_of(self._plans, self.base) if items else None, labels)
+        self._on_reached = on_reached
+        session.first = labels[current] if current else ""
         return ACCEPTED
+
+    def load(self, mission: Mission) -> Answer:
+        """Have the mission of a file: what it flies, and its fence."""
+        session = self.session
+        if session.is_armed:
+            return rejected_for_now("Mission refused: change it on the ground, before arming")
+        reference = mission.reference
+        sources = [step.source for step in reference.steps] if isinstance(reference, Route) else []
+        session.world = replace(self.base, boundary=mission.boundary, excluded=mission.excluded)
+        self._take(
+            replace(session.world, name=mission.name, reference=reference, limits=mission.limits),
+            [*dict.fromkeys(sources)],
+        )
+        return ACCEPTED
+
+    def _take(self, mission: Mission | None, labels: list[str]) -> None:
+        self.session.mission, self._labels = mission, labels
+        self.session.first, self._reached, self._finished = "", [], False
+        self.session.changes += 1
 
     def take_fence(self, items: Sequence[MissionItem]) -> None:
         """Have another fence from the next arming on."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import fields
 from functools import partial
@@ -100,7 +99,8 @@ class TeamServer:
         FileServices().register(self.dispatcher)
         UnservedInputs(TEAM_SYSTEM, STICKS).register(self.dispatcher)
         self._changes = -1
-        self._latest = -math.inf
+        self.now = 0.0
+        """Time of the last exchange."""
 
     def _new_peer(self, address: Address) -> Peer:
         config = self.session.world.system
@@ -134,7 +134,7 @@ class TeamServer:
 
     def datagrams_to_send(self, now: float) -> list[tuple[bytes, Address]]:
         """Return all that is due at ``now``, each with its address."""
-        self._latest = now
+        self.now = now
         out = self.session.station.datagrams_to_send(now)
         self.aircraft.report_reached()
         self.session.step(now)
@@ -152,7 +152,7 @@ class TeamServer:
         due = [self._peers.next_due, self._missions.next_due]
         if (of_station := self.session.station.next_timer()) is not None:
             due.append(of_station)
-        return max(min(due), self._latest)
+        return max(min(due), self.now)
 
     def resume(self) -> None:
         """See :meth:`.GroundStation.resume`."""

@@ -13,12 +13,13 @@ from gcs.flight.flight import Flight
 from gcs.flight.ground_station import GroundStation
 from gcs.flight.phase import CONTROLLED, IN_AIR, Phase
 from gcs.mavlink import px4
-from gcs.mission.model import Mission
+from gcs.mission.model import Lissajous, Mission
 from gcs.mission.route import Climb, FlyTo, HoldForever, Land, Leg, Place, Position, Route, Stay
 
 PREFLIGHT_DISARM = 10.0
 """s for which armed vehicles wait for a take-off, as COM_DISARM_PRFLT of PX4."""
-_ON_GROUND = (Phase.CONNECT, Phase.CHECK, Phase.ARM)
+_AT_REST = 0.1
+"""m/s; below which the payload is at rest."""
 
 
 class OpenFlight(Protocol):
@@ -101,6 +102,17 @@ class TeamSession:
         return self.flight.system.guidance.speed_limit == 0.0
 
     @property
+    def is_settled(self) -> bool:
+        """True while the payload holds at the end of the last order, or is paused at rest."""
+        flight = self.flight
+        if flight.phase not in IN_AIR:
+            return not self.is_armed
+        if self.is_paused:
+            record = flight.last_record
+            return record is not None and math.hypot(*record.estimate.x[3:6].tolist()) < _AT_REST
+        return flight.phase is Phase.HOLD and self.next_source is None
+
+    @property
     def flies_mission(self) -> bool:
         """True while the mission is flown, be it paused."""
         return self._flies_mission
@@ -159,7 +171,7 @@ class TeamSession:
     def take_off(self, altitude: float) -> None:
         """Take off to ``altitude`` (m above home), and hold there."""
         steps = (Climb("take-off", Place(None, altitude)), Stay("take-off", Place()))
-        self._begin(Route(steps, self._cruise_speed(), self.world.system.resting_altitude))
+        self._begin(self.world, Route(steps, self._cruise_speed(), self.world.system.resting_altitude))
         self._set_mode(px4.MODE_TAKEOFF)
 
     def fly_mission(self, *, anew: bool = False) -> None:
@@ -167,14 +179,19 @@ class TeamSession:
 
         ``anew``: leave the item that is flown to.
         """
-        assert self.mission is not None and isinstance(self.mission.reference, Route)
+        assert self.mission is not None
         route = self.mission.reference
+        if isinstance(route, Lissajous):
+            self._begin(self.mission, route)
+            self._flies_mission = True
+            self._set_mode(px4.MODE_MISSION)
+            return
         if self.first:
             route = route.beginning_at(self.first)
         if self.speed is not None:
             route = replace(route, speed=self.speed)
         if not self.in_air:
-            self._begin(route)
+            self._begin(self.mission, route)
         elif self._flies_mission and self.is_paused and not anew:
             self._limit_speed()
         else:
@@ -223,9 +240,9 @@ class TeamSession:
         if self.is_armed:
             self.station.raise_failsafe(now, failsafe, reason)
 
-    def _begin(self, route: Route) -> None:
-        self._planned_speed = route.speed
-        self.flight.mission = replace(self.mission or self.world, reference=route)
+    def _begin(self, mission: Mission, route: Route | Lissajous) -> None:
+        self._planned_speed = route.speed if isinstance(route, Route) else math.inf
+        self.flight.mission = replace(mission, reference=route)
         self.flight.may_take_off = True
 
     def _leave_mission(self, legs: list[Leg]) -> None:
