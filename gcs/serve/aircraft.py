@@ -257,7 +257,8 @@ class TeamAircraft:
         reference = mission.reference
         sources = [step.source for step in reference.steps] if isinstance(reference, Route) else []
         session.world = replace(self.base, boundary=mission.boundary, excluded=mission.excluded)
-        self._take(
+        flown = replace(session.world, name=mission.name, reference=reference, limits=mission.limits)
+        self._take(flown, [*dict.fromkeys(sources)])
             replace(session.world, name=mission.name, reference=reference, limits=mission.limits),
             [*dict.fromkeys(sources)],
         )
