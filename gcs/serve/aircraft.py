@@ -259,9 +259,6 @@ class TeamAircraft:
         session.world = replace(self.base, boundary=mission.boundary, excluded=mission.excluded)
         flown = replace(session.world, name=mission.name, reference=reference, limits=mission.limits)
         self._take(flown, [*dict.fromkeys(sources)])
-            replace(session.world, name=mission.name, reference=reference, limits=mission.limits),
-            [*dict.fromkeys(sources)],
-        )
         return ACCEPTED
 
     def _take(self, mission: Mission | None, labels: list[str]) -> None:
