@@ -100,10 +100,11 @@ class _TelemetryTimeout:
     def __init__(self, timeout: float) -> None:
         self._timeout = timeout
         self._last: list[float] = []
-        """Of each vehicle and of the payload; empty: not in the air yet."""
+        """Of each vehicle and of the payload; empty: not in the air."""
 
     def __call__(self, step: MonitorStep) -> None:
         if not step.in_air:
+            self._last = []
             return
         links, now, timeout = step.links, step.now, self._timeout
         received_at = [link.complete_telemetry_received_at for link in links]

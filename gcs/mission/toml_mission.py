@@ -19,7 +19,8 @@ from gcs.mission.items import FARTHEST, ITEM_LIMIT
 from gcs.mission.model import Fault, Limits, Lissajous, Name
 from gcs.mission.motion import WaypointsMotion
 from gcs.mission.obstacle_table import ObstacleTable
-from gcs.mission.route import Descend, Go, Place, Route, Step
+from gcs.mission.route import Route
+from gcs.mission.steps import Descend, Go, Place, Step
 
 DEFAULT_SEED = 1
 
