@@ -78,6 +78,8 @@ class MonitorSettings(SettingsTable):
     noise_factor: float = 4.0  # of the variances of all sensors; clean flights reach 2
     # of the force's error variance, that its estimate has without a force; the filter comes to 0.4
     force_share: float = 0.5
+    mass_time: float = 5.0  # s; from the climb after grippers were commanded until the payload is weighed
+    mass_error: float = 0.05  # relative error of the estimated mass then, from flights in wind
 
 
 @dataclass(frozen=True, eq=False, repr=False)

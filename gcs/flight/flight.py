@@ -67,7 +67,7 @@ class Flight:
         """Of this flight, from the beginning of its climb until the rotors spool up for the next; else None."""
         self._home: Array | None = None
         self._pad: Trajectory | None = None
-        self._spool_up = math.nan
+        self._spool_up_start = math.nan
         self._touchdown: Touchdown | None = None
         self._sequence: CommandSequence | None = None
         self._ending: CommandSequence | None = None
@@ -305,7 +305,7 @@ class Flight:
         rest = Reference(self.control.controller.parameters, self._pad, self.control.controller.load.estimate)
         self.control.estimator.start(time, rest.at(np.array([time])).x[0])
         self.control.estimator.setpoints.add(time, None)
-        self._spool_up = time
+        self._spool_up_start = time
         if math.isnan(self.takeoff_time):
             self.takeoff_time, self._home = time, self._pad.position(time)
         self.phase = Phase.SPOOL_UP
@@ -348,7 +348,7 @@ class Flight:
     def _thrust_share(self, time: float, estimate: Estimate) -> float:
         """Return the share of the thrust that carries payload and vehicles."""
         if self.phase is Phase.SPOOL_UP:
-            return min((time - self._spool_up) / self._settings.takeoff_landing.spool_up_time, 1.0)
+            return min((time - self._spool_up_start) / self._settings.takeoff_landing.spool_up_time, 1.0)
         if self._touchdown is None:
             return 1.0
         layout, ahead = self.control.controller.layout, self._settings.takeoff_landing.lean_time
