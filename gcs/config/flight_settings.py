@@ -111,6 +111,7 @@ class TakeoffLandingSettings(SettingsTable):
     place_time: float = setting(
         2.0, "s", "on the ground between the unloading of NAV_PAYLOAD_PLACE and the next take-off", ge=0.0
     )
+    landing_look_ahead: float = 1.0  # s; before the descent, from when on the landing place must be free
     landing_look_interval: float = 0.2  # s; between looks at the obstacle map of the landing place
     landing_clear_time: float = 2.0  # s; for which a place that was taken must be free
     pad_radius: float = 0.2  # m; about the take-off position, in which a landing is on the pad

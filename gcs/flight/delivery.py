@@ -36,7 +36,7 @@ class Delivery:
         """Raise the alarms of one control step."""
         flight = self._flight
         place = flight.landing_place
-        if place.waited(step.time) >= 0.0 and place.taken is not None:
+        if place.is_waited_for and place.taken is not None:
             text = f"landing place taken by {place.taken.name}: holds above"
             step.raise_alarm(place.taken.name, DeliveryAlarm.LANDING_PLACE_TAKEN, text)
         if (legs := flight.ground_legs) is None:

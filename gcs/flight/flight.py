@@ -174,19 +174,19 @@ class Flight:
         if flown is None or self.failsafes.reaction is not Reaction.NONE:
             return
         progress = guidance.progress(time)
-        if place.waited(time) >= 0.0:
+        if place.is_waited_for:
             if place.look(time, flown.above) and place.is_free and flown.is_at_rest(progress):
                 place.waiting_since = math.inf
                 flown.resume_landing(progress)
                 guidance.restart(time, progress)
-        elif flown.landing_from < math.inf and progress < flown.slow_from:
+        elif flown.landing_from - self._settings.takeoff_landing.landing_look_ahead < progress < flown.slow_from:
             followed, along = guidance.stopping_trajectory(time, flown.trajectory)
             is_descending = progress >= flown.landing_from
             if followed is not flown.trajectory and not is_descending:
                 return  # on its way round something else
             here = flown.trajectory.position(progress) if is_descending else flown.above
             if place.look(time, here) and place.taken is not None:
-                place.waiting_since = time
+                place.waiting_since = time + max(flown.landing_from - progress, 0.0)
                 flown.wait(followed, along)
                 guidance.restart(time, along)
 

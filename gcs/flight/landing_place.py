@@ -34,16 +34,21 @@ class LandingPlace:
         self.taken: Obstruction | None = None
         """What was found there last; None: nothing."""
         self.waiting_since = math.inf
-        """Since when the payload waits above it; inf: it does not."""
+        """Since when the payload waits above it, in a moment maybe; inf: it is not to."""
 
     @property
     def is_free(self) -> bool:
         """True if it has been free for some time, as often as it was looked at."""
         return self._looked - self._free_since >= self._settings.landing_clear_time
 
+    @property
+    def is_waited_for(self) -> bool:
+        """True while the payload is not to descend."""
+        return self.waiting_since < math.inf
+
     def waited(self, time: float) -> float:
-        """Return for how long (s) the payload has been waiting at ``time``; negative: it does not."""
-        return time - self.waiting_since
+        """Return for how long (s) the payload has been waiting at ``time``."""
+        return max(time - self.waiting_since, 0.0)
 
     def look(self, time: float, above: Array) -> bool:
         """Look at the way down from ``above`` (3,), if it is time to; return whether it was."""
