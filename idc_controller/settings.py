@@ -32,7 +32,7 @@ def setting(default: Any, unit: str, meaning: str, **bounds: float) -> Any:
     """Declare a field of a settings dataclass.
 
     Args:
-        default: the value of the default system.
+        default: the value of the default system; ``dataclasses.MISSING``: the key must be given.
         unit: its unit, empty for a pure number.
         meaning: what it decides, and where the default comes from, in one sentence.
         bounds: ``gt``, ``ge``, ``lt``, ``le``, that a system file is held to.

@@ -14,9 +14,11 @@ from vehicle_sim.autopilot.free.settings import free_settings
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.faults.disturbances import Disturbances
 from vehicle_sim.faults.phases import VehicleState
+from vehicle_sim.mavlink.payload_unit import PayloadUnit
 from vehicle_sim.mavlink.vehicle import Vehicle
 from vehicle_sim.team import Team
 from vehicle_sim.world.free_world import FreeWorld
+from vehicle_sim.world.grippers import GripperAction, Grippers
 from vehicle_sim.world.obstacle_bodies import MovingObstacles
 from vehicle_sim.world.rotors import Rotors, Wrenches
 from vehicle_sim.world.truth_log import TruthLog
@@ -57,6 +59,8 @@ class Swarm:
         """
         rates, onboard = config.rates, config.onboard()
         self.world: World | FreeWorld
+        self._faults = faults or Disturbances()
+        unit = None
         if free:
             self.world = FreeWorld(config.uav, config.team.vehicles, rates.physics, gui, config.world)
             airframes = [Airframe.of_config(config.uav)] * config.team.vehicles
@@ -64,6 +68,9 @@ class Swarm:
         else:
             system = config.true_parameters()
             self.world = World(system, rates.physics, gui, config.world)
+            factor = config.world.payload_mass_factor
+            grippers = Grippers(config.cargo, self.world, factor, self._faults.is_stuck, self._record_cargo)
+            unit = PayloadUnit(grippers, lambda: any(vehicle.autopilot.armed for vehicle in self.vehicles))
             airframes = [Airframe.of_system(system, i, config.uav) for i in range(system.number_of_uavs)]
         try:
             self._obstacles = MovingObstacles(self.world.obstacles, obstacles)
@@ -72,7 +79,6 @@ class Swarm:
             raise
         self.failsafe = config.flight.failsafe
         self.take_off_time: float | None = None
-        self._faults = faults or Disturbances()
         self._truth: TruthLog | None = None
         self._periods = [rates.physics // rate for rate in (rates.onboard, rates.truth, config.range_sensor.rate)]
         """Physics steps between onboard steps, rows of the truth, and scans of the range sensors."""
@@ -83,7 +89,7 @@ class Swarm:
             Vehicle(
                 i, airframe, onboard_rate=rates.onboard, telemetry_rate=rates.telemetry, home=home or DEFAULT_HOME,
                 clients=_clients(i, ground_address, sdk_address), clock=self._faults.clock_of(i), autopilot=onboard,
-                link=config.vehicle_link, arrays=arrays.of_vehicle(i - 1), free=free,
+                link=config.vehicle_link, arrays=arrays.of_vehicle(i - 1), free=free, unit=unit,
             )
             for i, airframe in enumerate(airframes, start=1)
         )  # fmt: skip
@@ -205,6 +211,10 @@ class Swarm:
         if isinstance(self.world, World) and self.world.any_lifted:  # cradles bear what is not known
             truth.write_tensions(self.world.time, self.world.link_tensions())
         self._contacts = 0
+
+    def _record_cargo(self, action: GripperAction) -> None:
+        if self._truth is not None:
+            self._truth.write_cargo(action)
 
     def _onboard(self, states: Array) -> None:
         """Let all vehicles take an onboard step, and record what they fly where it changes."""

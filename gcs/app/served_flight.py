@@ -13,36 +13,21 @@ from typing import TYPE_CHECKING
 
 from gcs.app.fly import FlightResult, flight_result, ground_station
 from gcs.app.logs import LOG
-from gcs.flight.alarms import Alarm
 from gcs.mavlink.address import Address
 from gcs.mission.model import Mission
+from gcs.record.no_records import NoRecords
 from gcs.record.recorder import FlightRecorder
 from gcs.record.run_folder import NewRunFolder, write_manifest
 
 if TYPE_CHECKING:
-    from gcs.flight.control_loop import StepRecord
-    from gcs.flight.flight import Flight
     from gcs.flight.ground_station import GroundStation
-    from idc_controller.control.controller import Decision
-    from idc_controller.perception.obstacle_map import ObstacleMap
-
-
-class _NoRecords:
-    """A :class:`.Recorder` of a ground station that waits."""
-
-    def datagrams(self, now: float, datagrams: Sequence[bytes]) -> None: ...
-    def end_exchange(self) -> None: ...
-    def step(self, flight: Flight, time: float, record: StepRecord | None) -> None: ...
-    def compute_times(self, time: float, decision: Decision, parts: Sequence[float]) -> None: ...
-    def obstacles(self, obstacle_map: ObstacleMap, time: float) -> None: ...
-    def alarm(self, alarm: Alarm) -> None: ...
 
 
 class Waiting:
     """A ground station between flights, without records."""
 
     def __init__(self, world: Mission, addresses: Sequence[Address | None]) -> None:
-        self.station = ground_station(world, addresses, _NoRecords())
+        self.station = ground_station(world, addresses, NoRecords())
 
     def close(self) -> str:
         """Return nothing: there are no records."""

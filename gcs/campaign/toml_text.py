@@ -32,7 +32,8 @@ def tables_text(data: Mapping[str, Any]) -> str:
         for array in [not isinstance(value, Mapping)]
         for table in (value if array else [value])
     ]
-    return "\n\n".join(tables) + "\n"
+    empty = [f"{name} = []" for name, value in data.items() if not value and not isinstance(value, Mapping)]
+    return "\n\n".join([*empty, *tables]) + "\n"
 
 
 def _fields(value: Any) -> dict[str, Any]:

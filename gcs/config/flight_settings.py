@@ -47,6 +47,7 @@ class FailsafeSettings(SettingsTable):
     arm_timeout: float = 12.0  # s; until all vehicles are in OFFBOARD and armed
     disarm_timeout: float = 10.0  # s; until all are disarmed: heartbeats come once a second, and some are lost
     landing_timeout: float = setting(120.0, "s", "until all have landed autonomously", gt=0.0)
+    landing_wait: float = setting(60.0, "s", "above a landing place that is taken, before the return home", ge=0.0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -77,6 +78,8 @@ class MonitorSettings(SettingsTable):
     noise_factor: float = 4.0  # of the variances of all sensors; clean flights reach 2
     # of the force's error variance, that its estimate has without a force; the filter comes to 0.4
     force_share: float = 0.5
+    mass_time: float = 5.0  # s; from the climb after grippers were commanded until the payload is weighed
+    mass_error: float = 0.05  # relative error of the estimated mass then, from flights in wind
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -105,6 +108,12 @@ class TakeoffLandingSettings(SettingsTable):
     slow_height: float = 1.0  # m; above the ground, below which a descent is slow
     slow_margin: float = 0.5  # m; above that, from where the whole descent is slow
     hold_speed: float = 0.05  # m/s; of the reference, up to which the phase is hold, not fly
+    place_time: float = setting(
+        2.0, "s", "on the ground between the unloading of NAV_PAYLOAD_PLACE and the next take-off", ge=0.0
+    )
+    landing_look_ahead: float = 1.0  # s; before the descent, from when on the landing place must be free
+    landing_look_interval: float = 0.2  # s; between looks at the obstacle map of the landing place
+    landing_clear_time: float = 2.0  # s; for which a place that was taken must be free
     pad_radius: float = 0.2  # m; about the take-off position, in which a landing is on the pad
 
 

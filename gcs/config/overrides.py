@@ -8,6 +8,7 @@ from typing import Any
 
 from gcs.config.schema import paths
 from gcs.config.system import SystemConfig, system_of
+from gcs.config.tables import DEFAULT_CARGO
 from gcs.config.toml_file import GivenTables
 from gcs.errors import UnusableInput
 
@@ -22,6 +23,8 @@ def with_settings(system: SystemConfig, settings: Mapping[str, Any]) -> SystemCo
     if not settings:
         return system
     tables = system.tables()
+    if system.cargo == DEFAULT_CARGO:
+        del tables["cargo"]  # as of a file that states none: it goes with the default payload's mass
     if (mesh := system.payload.mesh) is not None:
         tables["payload"]["mesh"] = str(mesh.path)  # not as seen from the system file
     for path, value in settings.items():

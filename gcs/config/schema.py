@@ -14,6 +14,7 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from pydantic_core import CoreSchema, SchemaValidator
 from pydantic_core.core_schema import (
+    bool_schema,
     float_schema,
     int_schema,
     no_info_after_validator_function,
@@ -40,7 +41,7 @@ def table_validator(cls: type[Any]) -> SchemaValidator:
 
 
 def _table_schema(cls: type[Any]) -> CoreSchema:
-    """Return the schema of a table, and of those within it: its keys, none of which must be there."""
+    """Return the schema of a table, and of those within it: its keys; those without a default must be there."""
 
     def construct(values: dict[str, Any]) -> Any:
         try:
@@ -50,7 +51,8 @@ def _table_schema(cls: type[Any]) -> CoreSchema:
 
     keys = {
         name: typed_dict_field(
-            _table_schema(hint) if _is_table(hint) else _schema(hint, _bounds(hint, field)), required=False
+            _table_schema(hint) if _is_table(hint) else _schema(hint, _bounds(hint, field)),
+            required=_default(field) is dataclasses.MISSING,
         )
         for name, hint, field in _keys(cls)
     }
@@ -82,6 +84,8 @@ def _reads_itself(hint: Any) -> bool:
 def _plain(value: Any) -> Any:
     if _reads_itself(type(value)):
         return str(value)
+    if isinstance(value, SettingsTable):
+        return table_of(value)
     return [_plain(item) for item in value] if isinstance(value, tuple) else value
 
 
@@ -127,6 +131,10 @@ def _bounds(hint: Any, field: dataclasses.Field[Any]) -> dict[str, Any]:
 
 def _schema(hint: Any, bounds: Mapping[str, Any]) -> CoreSchema:
     """Return the schema of a setting of the type ``hint``, with ``bounds`` on every number in it."""
+    if _is_table(hint):  # of an array of tables
+        return _table_schema(hint)
+    if hint is bool:
+        return bool_schema()
     if hint is float or hint == Share:
         return float_schema(allow_inf_nan=False, **bounds)
     if hint is int:

@@ -7,6 +7,7 @@ settings in its ``settings.py``; they are one field of :class:`SystemConfig`.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
@@ -17,6 +18,9 @@ import numpy as np
 from gcs.config.flight_settings import DriverSettings, FlightSettings
 from gcs.config.schema import table_of, table_validator
 from gcs.config.tables import (
+    DEFAULT_CARGO,
+    PAYLOAD_MASS_MIN,
+    Cargo,
     MotionConfig,
     PayloadConfig,
     RangeSensorConfig,
@@ -45,7 +49,7 @@ from idc_controller.guidance.settings import (
 from idc_controller.parameters import SystemParameters, polygon_attachments
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.safety.settings import FilterSettings, PlannerSettings
-from idc_controller.settings import SettingsTable
+from idc_controller.settings import SettingsTable, setting
 from idc_controller.trajectory.settings import AvoidanceSettings, BrakingSettings
 
 _OTHER_FILES = {
@@ -94,9 +98,10 @@ class ControlConfig(SettingsTable):
 
 @dataclass(frozen=True)
 class SystemConfig:
-    """A whole system file, SI units. Each field is a table."""
+    """A whole system file, SI units. Each field is a table, or an array of tables."""
 
     payload: PayloadConfig = field(default_factory=PayloadConfig)
+    cargo: tuple[Cargo, ...] = setting(DEFAULT_CARGO, "", "what the payload's grippers hold or can grab")
     uav: UavConfig = field(default_factory=UavConfig)
     team: TeamConfig = field(default_factory=TeamConfig)
     sensors: SensorsConfig = field(default_factory=SensorsConfig)
@@ -211,6 +216,8 @@ def read_system(path: Path | None = None) -> SystemConfig:
 def system_of(file: ParsedFile) -> SystemConfig:
     """Return the system of a parsed file. Raises :class:`UnusableFile` as :func:`read_system` does."""
     config: SystemConfig = file.validated(table_validator(SystemConfig))
+    if "cargo" not in file.data and config.payload.mass != PayloadConfig.mass:
+        config = replace(config, cargo=())  # the default is part of the default payload
     if problems := _disagreements(config, file):
         raise UnusableFile(problems)
     try:
@@ -224,6 +231,8 @@ def system_of(file: ParsedFile) -> SystemConfig:
 def _cause(config: SystemConfig, file: ParsedFile) -> Key:
     """Return the key of a number with whose default the system could fly; the team where no single one is the cause."""
     for table in fields(config):
+        if not isinstance(getattr(config, table.name), SettingsTable):
+            continue
         for key in file.data.get(table.name, ()):
             default = getattr(getattr(SystemConfig(), table.name), key)
             if not isinstance(default, int | float):
@@ -238,7 +247,7 @@ def _cause(config: SystemConfig, file: ParsedFile) -> Key:
 def _disagreements(config: SystemConfig, file: ParsedFile) -> list[str]:
     """Return what is wrong between keys, one line each."""
     rates, team, motion = config.rates, config.team, config.motion
-    found: list[tuple[tuple[str, str], str]] = []
+    found: list[tuple[Key, str]] = []
     divided = {("rates", name): getattr(rates, name) for name in ("onboard", "telemetry", "control")}
     for key, rate in {**divided, ("range_sensor", "rate"): config.range_sensor.rate}.items():
         if rates.physics % rate:
@@ -261,4 +270,29 @@ def _disagreements(config: SystemConfig, file: ParsedFile) -> list[str]:
             found.append((("range_sensor", low), f"{lowest} {unit} is not below {high}, {highest} {unit}"))
     if motion.speed > motion.speed_max:
         found.append((("motion", "speed"), f"{motion.speed} is more than speed_max, {motion.speed_max}"))
-    return [file.problem(key, reason) for key, reason in found]
+    return [file.problem(key, reason) for key, reason in [*found, *_cargo_problems(config)]]
+
+
+def _cargo_problems(config: SystemConfig) -> Iterator[tuple[Key, str]]:
+    """Yield what is wrong with the cargo: a gripper named twice, a payload of cargo alone, more than can be carried."""
+    mass, rest = config.payload.mass, config.payload.mass
+    heaviest = mass
+    grippers: dict[int, int] = {}
+    for i, cargo in enumerate(config.cargo):
+        first = grippers.setdefault(cargo.gripper, i)
+        if first != i:
+            yield ("cargo", i, "gripper"), f"{cargo.gripper} is the gripper of cargo[{first + 1}]"
+        if not cargo.loaded:
+            heaviest += cargo.mass
+            continue
+        if rest >= PAYLOAD_MASS_MIN > rest - cargo.mass:
+            reason = f"{cargo.mass:g} kg: payload.mass, {mass:g} kg, contains a container"
+            yield ("cargo", i, "mass"), f"{reason} of {PAYLOAD_MASS_MIN:g} kg at least and {mass - rest:g} kg before"
+        rest -= cargo.mass
+    if heaviest > mass:
+        with suppress(ParameterError):
+            system = config.true_parameters()
+            try:
+                system.with_payload_mass(heaviest * config.world.payload_mass_factor)
+            except ParameterError as error:
+                yield ("cargo",), f"a payload of {heaviest:g} kg with all that is not loaded yet: {error}"

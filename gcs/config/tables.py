@@ -4,7 +4,7 @@ SI units; frames are north-east-down (world) and forward-right-down (payload, UA
 Table I of the paper.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import MISSING, dataclass, field
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from idc_controller.settings import SettingsTable, setting
 from idc_controller.trajectory.settings import CORNER, Limits
 
 Vector = tuple[float, float, float]
+
+PAYLOAD_MASS_MIN = 0.1
+"""Least mass (kg) of a payload without its cargo, whatever it has lost."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -50,6 +53,19 @@ class PayloadConfig(SettingsTable):
     def centre_of_mass(self) -> Array:
         """The centre of mass (3,) (m) in the coordinates of the attachment points: the mesh's, or the box's."""
         return np.zeros(3) if self.mesh is None else self.mesh.centre_of_mass
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Cargo(SettingsTable):
+    """What one gripper of the payload holds, or can grab. Container and centre of mass are the payload's."""
+
+    gripper: int = setting(MISSING, "", "number of the gripper, of MAV_CMD_DO_GRIPPER", ge=1, le=6)
+    mass: float = setting(MISSING, "kg", "mass; payload.mass contains it if it is loaded", gt=0.0)
+    loaded: bool = setting(True, "", "whether the gripper holds it at the first take-off")
+
+
+DEFAULT_CARGO = Cargo(1, 0.5), Cargo(2, 0.5)
+"""That of the default payload."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

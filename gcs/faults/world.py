@@ -1,13 +1,13 @@
-"""Faults of the world: wind, and a load that changes."""
+"""Faults of the world: wind, a load that changes, and grippers that are stuck."""
 
 from typing import Annotated
 
 from gcs.config import SystemConfig
-from gcs.config.tables import Vector
+from gcs.config.tables import PAYLOAD_MASS_MIN, Vector
 from gcs.faults.kind import FaultSettings, Problem, Vehicles, kind, names, parameter
 from idc_controller.errors import ParameterError
 
-LEAST_MASS = 0.1  # kg that must be left of the payload
+ALL_GRIPPERS = 0
 
 
 @kind("wind", "world", ("gust", "gusts", "turbulence", "wind_gust", "wind_gusts"), of_vehicles=False)
@@ -41,10 +41,31 @@ class PayloadMass(FaultSettings):
         """Refuse a load that is nothing, or more than the team can carry."""
         true = system.true_parameters()
         mass = true.m_0 + self.change
-        if mass < LEAST_MASS:
-            return "change", f"{mass:g} kg would be left of the payload: at least {LEAST_MASS:g}"
+        if mass < PAYLOAD_MASS_MIN:
+            return "change", f"{mass:g} kg would be left of the payload: at least {PAYLOAD_MASS_MIN:g}"
         try:
             true.with_payload_mass(mass)
         except ParameterError as error:
             return "change", str(error)
+        return None
+
+
+@kind(
+    "gripper_stuck",
+    "world",
+    ("gripper", *names("gripper winch cargo", "stuck jam jammed failure fail failed fault blocked")),
+    of_vehicles=False,
+)
+class GripperStuck(FaultSettings):
+    """A gripper acknowledges commands, and neither releases nor grabs its cargo."""
+
+    gripper: Annotated[int, parameter("number of the gripper; 0: all", aliases="id number", ge=0, le=6)] = ALL_GRIPPERS
+
+    def problem(self, system: SystemConfig, vehicles: Vehicles) -> Problem:
+        """Refuse a gripper that the payload does not have."""
+        grippers = [cargo.gripper for cargo in system.cargo]
+        if not grippers:
+            return "gripper", "the payload has none: [[cargo]] of the system file"
+        if self.gripper not in (ALL_GRIPPERS, *grippers):
+            return "gripper", f"the payload has no gripper {self.gripper}, only {', '.join(map(str, grippers))}"
         return None

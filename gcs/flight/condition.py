@@ -10,6 +10,7 @@ from typing import NamedTuple
 from gcs.config.flight_settings import DEFAULTS, FailsafeSettings
 from gcs.flight.alarms import Severity
 from gcs.flight.command_sequences import CommandSequence
+from gcs.flight.landing_place import LandingPlace
 from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import Phase
 from gcs.flight.plan_monitor import ImpactMonitor, PlanMonitor
@@ -40,17 +41,18 @@ class Reaction(IntEnum):
     NONE = 0, Severity.NOTICE, "the flight goes on"
     REFUSE = 1, Severity.ERROR, "the flight does not begin, nothing is armed"
     DISARM = 2, Severity.ERROR, "rotors off, on the ground"
-    BRAKE_AND_LAND = (3, Severity.CRITICAL,
+    RETURN = (3, Severity.ERROR, "return home as the mission flies, and land there")
+    BRAKE_AND_LAND = (4, Severity.CRITICAL,
         "come to rest along the path that is followed, then land there under the ground's control")
-    AUTONOMOUS_LANDING = 4, Severity.ALERT, "all vehicles follow the same stop plan, hold, and descend on board"
-    END_CONTROL = 5, Severity.ALERT, "the ground stops sending; each vehicle is left to its own failsafes"
+    AUTONOMOUS_LANDING = 5, Severity.ALERT, "all vehicles follow the same stop plan, hold, and descend on board"
+    END_CONTROL = 6, Severity.ALERT, "the ground stops sending; each vehicle is left to its own failsafes"
     # fmt: on
 
     def in_phase(self, phase: Phase) -> Reaction:
         """Return the reaction in ``phase``: on the ground there is nothing to land."""
         if self is Reaction.END_CONTROL:
             return self
-        if phase in (Phase.CONNECT, Phase.CHECK):
+        if phase in (Phase.CONNECT, Phase.CHECK, Phase.ON_GROUND):
             return Reaction.REFUSE
         return Reaction.DISARM if phase in (Phase.ARM, Phase.SPOOL_UP, Phase.DISARM) else self
 
@@ -89,6 +91,8 @@ class System:
     """s; telemetry must not come less often."""
     steps: StepIntervals = field(default_factory=StepIntervals)
     """Of the control steps that were made."""
+    landing_place: LandingPlace | None = None
+    """None: it is not watched."""
 
 
 class Moment(NamedTuple):

@@ -11,6 +11,7 @@ import numpy as np
 from gcs.config.flight_settings import MonitorSettings
 from gcs.flight.alarms import Severity
 from gcs.flight.clock_movement import ClockMovement
+from gcs.flight.delivery import Delivery
 from gcs.flight.flight import Flight
 from gcs.flight.guarantee import Guarantee
 from gcs.flight.monitor_step import Detector, MonitorStep, Scope, ScopedAlarm
@@ -100,10 +101,11 @@ class _TelemetryTimeout:
     def __init__(self, timeout: float) -> None:
         self._timeout = timeout
         self._last: list[float] = []
-        """Of each vehicle and of the payload; empty: not in the air yet."""
+        """Of each vehicle and of the payload; empty: not in the air."""
 
     def __call__(self, step: MonitorStep) -> None:
         if not step.in_air:
+            self._last = []
             return
         links, now, timeout = step.links, step.now, self._timeout
         received_at = [link.complete_telemetry_received_at for link in links]
@@ -324,6 +326,7 @@ def detectors(flight: Flight, settings: MonitorSettings) -> tuple[Detector, ...]
         _MessageEvents(settings, number_of_uavs),
         _obstacles,
         Guarantee(flight),
+        Delivery(flight),
     )
 
 

@@ -52,7 +52,7 @@ def _connect_timeout(system: System, moment: Moment) -> Trigger | None:
 
 
 def _duplicate_system_id(system: System, moment: Moment) -> Trigger | None:
-    if moment.phase not in (Phase.CONNECT, Phase.CHECK):
+    if moment.phase not in (Phase.CONNECT, Phase.CHECK, Phase.ON_GROUND):
         return None
     since = moment.now - system.settings.duplicate_id_window
     for i, link in enumerate(system.team.links):
@@ -205,6 +205,8 @@ def _telemetry_incomplete(system: System, moment: Moment) -> Trigger | None:
 
 
 def _data_link_lost(system: System, moment: Moment) -> Trigger | None:
+    if moment.phase is Phase.ON_GROUND:
+        return None  # all are disarmed; before the next take-off they must have connected again
     # Vehicles that send nothing may still receive: a pending descent is commanded first.
     if moment.sequence is not None and moment.sequence.descent_pending:
         return None
@@ -237,6 +239,13 @@ def _map_offset(system: System, moment: Moment) -> Trigger | None:
 def _no_path(system: System, moment: Moment) -> Trigger | None:
     reason = system.guidance.blocked(moment.time)
     return Trigger(reason) if reason else None
+
+
+def _landing_aborted(system: System, moment: Moment) -> Trigger | None:
+    place, wait = system.landing_place, system.settings.landing_wait
+    if place is None or place.taken is None or not place.waited(moment.time) > wait:
+        return None
+    return Trigger(f"landing place taken by {place.taken.name} for {wait:g} s", source=place.taken.name)
 
 
 def _payload_control_lost(system: System, moment: Moment) -> Trigger | None:
@@ -402,6 +411,8 @@ class Failsafe(AlarmCode):
         "all vehicles detect the obstacles of the map away from their places")
     NO_PATH = (Check.IN_AIR, _no_path, Reaction.BRAKE_AND_LAND, "replan the mission",
         "the search for a detour has found none for long (`give_up` of the navigator)")
+    LANDING_ABORTED = (Check.IN_AIR, _landing_aborted, Reaction.RETURN, "clear the landing place",
+        "a landing place has been taken for {landing_wait:g} s")
     PAYLOAD_CONTROL_LOST = (Check.ESTIMATE, _payload_control_lost, Reaction.AUTONOMOUS_LANDING,
         "check the rigid links and the load",
         "the payload is tilted by more than {tilt_limit:.2f} rad, or its state is unknown, for {tilt_time} s")

@@ -18,7 +18,7 @@ from gcs.config.validate import UnusableFile
 from gcs.errors import UnusableInput
 from gcs.mission.model import Limits, Lissajous, Mission, Obstacle
 from gcs.mission.plausibility import implausible
-from gcs.mission.route import Circle, HoldForever, Land, Leg, Position, Route, TakeOff
+from gcs.mission.route import Circle, GroundLeg, HoldForever, Land, Leg, Position, Route, TakeOff
 from gcs.mission.route_clearance import (
     SPACING,
     TRIED_LEGS,
@@ -174,7 +174,7 @@ class _Check:
     def _route(self, pad: _Place, route: Route) -> None:
         here, legs = pad, route.first_lap(TRIED_LEGS)
         for leg in legs:
-            if isinstance(leg, HoldForever):
+            if isinstance(leg, HoldForever | GroundLeg):
                 continue
             there = _end(leg, here.position)
             if isinstance(leg, TakeOff):

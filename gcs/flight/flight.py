@@ -11,6 +11,9 @@ from gcs.flight.condition import Check, Moment, Reaction, System, Trigger
 from gcs.flight.control_loop import ControlLoop, Setpoints, StepRecord
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.failsafe_state import FailsafeState
+from gcs.flight.ground_legs import GroundLegs
+from gcs.flight.landing_place import LandingPlace
+from gcs.flight.mission_legs import MissionLegs
 from gcs.flight.mission_trajectory import MissionTrajectory
 from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import CONTROLLED, IN_AIR, Phase
@@ -18,7 +21,8 @@ from gcs.flight.plan_monitor import ImpactMonitor, PlanMonitor
 from gcs.flight.preflight import Preflight
 from gcs.flight.spool import Touchdown
 from gcs.flight.team import Team
-from gcs.mission.model import Mission
+from gcs.mission.cargo import CargoState
+from gcs.mission.model import Limits, Mission
 from gcs.mission.route import Leg
 from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import Estimate, Measurement
@@ -37,10 +41,13 @@ class Flight:
         settings = self._settings
         payload, preflight = PayloadMonitor(control.controller.parameters, settings), Preflight(team, settings)
         plan = PlanMonitor(control.controller.parameters.number_of_uavs, settings.failsafe)
+        # Nearer to what stands there, the filter's deflection would make it miss the place.
+        within = max(mission.system.avoidance.margin - (mission.limits or Limits()).arrival, 0.0)
+        self.landing_place = LandingPlace(control.controller.parameters, obstacle_map, within, settings.takeoff_landing)
         self.system = System(
             team, control.estimator, control.controller.guidance, payload, preflight, plan, ImpactMonitor(team.links),
             obstacle_map, settings.failsafe, mission.system.avoidance.margin + mission.system.safety.planner.tracking,
-            1.0 / mission.system.rates.control,
+            1.0 / mission.system.rates.control, landing_place=self.landing_place,
         )  # fmt: skip
         """The objects that the conditions of failsafes are evaluated on."""
         self.failsafes = FailsafeState(self.system, alarms)
@@ -60,12 +67,21 @@ class Flight:
         self.last_record: StepRecord | None = None
         """The last control step that had an estimate; None before take-off."""
         self.takeoff_time = math.nan
-        """Time at which the rotors began to spool up; nan before."""
+        """Time at which the rotors began to spool up for the first time; nan before."""
+        self.legs, self.cargo = MissionLegs.of(mission), CargoState(mission.system)
+        self.landings = 0
+        self.ground_legs: GroundLegs | None = None
+        """What is, or was, done on the ground before the take-off of this flight; None: nothing."""
         self.mission_trajectory: MissionTrajectory | None = None
-        """None until the climb begins."""
+        """Of this flight, from the beginning of its climb until the rotors spool up for the next; else None."""
+        self._passed: list[str] = []
+        """:attr:`passed` before the trajectory that is flown."""
+        self._home: Array | None = None
         self._pad: Trajectory | None = None
+        self._spool_up_start = math.nan
         self._touchdown: Touchdown | None = None
         self._sequence: CommandSequence | None = None
+        self._ending: CommandSequence | None = None
 
     @property
     def ended(self) -> bool:
@@ -75,7 +91,7 @@ class Flight:
     @property
     def landed(self) -> bool:
         """True if the vehicles have reported that they are disarmed after the flight."""
-        return self.ended and isinstance(self._sequence, Disarming | AutonomousLanding) and self._sequence.done
+        return self.ended and self._ending is not None and self._ending.done
 
     @property
     def completed(self) -> bool:
@@ -130,10 +146,12 @@ class Flight:
             self.phase = Phase.ENDED
         elif reaction is Reaction.DISARM:
             self._disarm(time)
+        elif reaction is Reaction.RETURN:
+            self._return_home(time)
         elif reaction in (Reaction.BRAKE_AND_LAND, Reaction.AUTONOMOUS_LANDING):
             self._brake_and_land(time)
             if reaction is Reaction.AUTONOMOUS_LANDING:
-                self._sequence = AutonomousLanding(self.system.team, time, self._settings)
+                self._sequence = self._ending = AutonomousLanding(self.system.team, time, self._settings)
                 self.phase = Phase.AUTONOMOUS_LANDING
 
     def check_links(self, time: float, now: float) -> bool:
@@ -161,17 +179,56 @@ class Flight:
             self.mission_trajectory.brake_and_land(followed, progress)
             guidance.restart(time, progress)
 
+    def _watch_landing_place(self, time: float) -> None:
+        """Wait above a landing place that is taken, and land once it is free; not where a failsafe lands."""
+        flown, place, guidance = self.mission_trajectory, self.landing_place, self.system.guidance
+        if flown is None or self.failsafes.reaction is not Reaction.NONE:
+            return
+        progress = guidance.progress(time)
+        if place.is_waited_for:
+            if place.look(time, flown.above) and place.is_free and flown.is_at_rest(progress):
+                place.waiting_since = math.inf
+                flown.resume_landing(progress)
+                guidance.restart(time, progress)
+        elif flown.landing_from - self._settings.takeoff_landing.landing_look_ahead < progress < flown.slow_from:
+            followed, along = guidance.stopping_trajectory(time, flown.trajectory)
+            is_descending = progress >= flown.landing_from
+            if followed is not flown.trajectory and not is_descending:
+                return  # on its way round something else
+            here = flown.trajectory.position(progress) if is_descending else flown.above
+            if place.look(time, here) and place.taken is not None:
+                place.waiting_since = time + max(flown.landing_from - progress, 0.0)
+                flown.wait(followed, along)
+                guidance.restart(time, along)
+
+    def _return_home(self, time: float) -> None:
+        flown, guidance = self.mission_trajectory, self.system.guidance
+        if flown is not None and self.phase in IN_AIR:
+            self.landing_place.waiting_since = math.inf
+            followed, progress = guidance.stopping_trajectory(time, flown.trajectory)
+            flown.return_home(followed, progress)
+            guidance.restart(time, progress)
+
     # Orders
 
-    def fly(self, legs: Iterator[Leg], speed: float) -> None:
-        """Come to rest within the limits, then fly ``legs`` from there, none faster than ``speed`` (m/s), and land.
+    def begin(self, mission: Mission) -> None:
+        """Fly ``mission`` with the next take-off, of the same system and in the same world."""
+        self.mission, self.legs = mission, MissionLegs.of(mission)
+        self.may_take_off = True
 
-        Only before the landing, and while no failsafe lands the payload.
+    def fly(self, legs: Iterator[Leg], speed: float) -> None:
+        """Come to rest within the limits, then fly ``legs`` from there, none faster than ``speed`` (m/s).
+
+        They end with a hold or a landing, after which others may follow. Only before the landing, and while no failsafe
+        lands the payload.
         """
         assert self.mission_trajectory is not None
         guidance, time = self.system.guidance, self.time
+        self._passed = self.passed
+        self.legs = MissionLegs(legs)
         followed, progress = guidance.stopping_trajectory(time, self.mission_trajectory.trajectory)
-        self.mission_trajectory.go_on(followed, progress, legs, speed)
+        self.mission_trajectory.go_on(followed, progress, self.legs.flight(), speed)
+        self.landing_place.waiting_since = math.inf
         self.is_redirected = True
         guidance.restart(time, progress)
 
@@ -179,6 +236,20 @@ class Flight:
         """Disarm vehicles that wait on the ground, armed, for their take-off."""
         if self.phase is Phase.ARM:
             self._disarm(self.time)
+
+    @property
+    def passed(self) -> list[str]:
+        """Sources of what was flown: waypoints reached, landings, in the order of the flight."""
+        flown = None if self._touchdown is not None else self.mission_trajectory
+        if flown is None:
+            return self._passed
+        return [*self._passed, *flown.passed(self.system.guidance.progress(self.time))]
+
+    @property
+    def next_source(self) -> str | None:
+        """Source of what is flown to; None: it holds for good at the last, or stands."""
+        flown = None if self._touchdown is not None else self.mission_trajectory
+        return None if flown is None else flown.next_source(self.system.guidance.progress(self.time))
 
     # Phases
 
@@ -203,6 +274,7 @@ class Flight:
         self._evaluate(Check.STEP, time, now)
         if self.phase in IN_AIR:
             self._evaluate(Check.IN_AIR, time, now)
+            self._watch_landing_place(time)
         match self.phase:
             case Phase.CONNECT:
                 self._connect(time, now)
@@ -215,9 +287,11 @@ class Flight:
             case Phase.AUTONOMOUS_LANDING:
                 if self._step_sequence(time, now):
                     self.phase = Phase.ENDED
+            case Phase.ON_GROUND:
+                self._stand(time, now)
             case Phase.DISARM:
                 if self._step_sequence(time, now):
-                    self.phase = Phase.ENDED
+                    self._begin_standing(time)
                 # A vehicle that is not disarmed yet must not react to set-point loss, and rise.
                 return self._idle(), None
             case Phase.ENDED:
@@ -246,11 +320,38 @@ class Flight:
     def _connect(self, time: float, now: float) -> None:
         preflight = self.system.preflight
         preflight.uptime = max(float(math.floor(time - now)), 0.0)
-        if preflight.connect(now):
-            preflight.check_start = time
-            self.phase = Phase.CHECK
+        if not preflight.connect(now):
+            self._evaluate(Check.CONNECT, time, now)
+        elif self.legs.takes_off:
+            self._begin_check(time)
+        else:
+            self._begin_standing(time)
+
+    def _begin_standing(self, time: float) -> None:
+        """Go on with the legs on the ground, where the mission has any; the next flight connects anew."""
+        if self.reason or self.legs.ended:
+            self.phase = Phase.ENDED
+            return
+        self.control.stop_plans.clear()
+        self.system.preflight.restart()
+        self._sequence = self.ground_legs = GroundLegs(
+            self.system.team, time, self.legs.on_ground(), self.cargo, self._settings
+        )
+        self.phase = Phase.ON_GROUND
+
+    def _stand(self, time: float, now: float) -> None:
+        if not self._step_sequence(time, now):
+            return
+        if self.legs.ended:
+            self.phase = Phase.ENDED
+        elif self.system.preflight.connect(now):
+            self._begin_check(time)
         else:
             self._evaluate(Check.CONNECT, time, now)
+
+    def _begin_check(self, time: float) -> None:
+        self.system.preflight.check_start = time
+        self.phase = Phase.CHECK
 
     def _check(self, time: float, now: float) -> None:
         preflight = self.system.preflight
@@ -258,19 +359,25 @@ class Flight:
         self.is_ready = passed and preflight.has_positions and preflight.is_settled(time)
         if self.is_ready and self.may_arm:
             self._pad = RestTrajectory(preflight.payload, time)
+            self._ending = None
             self._sequence = Arming(self.system.team, time, self._settings)
             self.phase = Phase.ARM
 
     def _begin_spool_up(self, time: float) -> None:
         assert self._pad is not None
+        if self.landings:
+            self._touchdown = self.mission_trajectory = None
+            self.control.controller.start()
         rest = Reference(self.control.controller.parameters, self._pad, self.control.controller.load.estimate)
         self.control.estimator.start(time, rest.at(np.array([time])).x[0])
         self.control.estimator.setpoints.add(time, None)
-        self.takeoff_time = time
+        self._spool_up_start = time
+        if math.isnan(self.takeoff_time):
+            self.takeoff_time, self._home = time, self._pad.position(time)
         self.phase = Phase.SPOOL_UP
 
     def _disarm(self, time: float) -> None:
-        self._sequence = Disarming(self.system.team, time, self._settings)
+        self._sequence = self._ending = Disarming(self.system.team, time, self._settings)
         self.phase = Phase.DISARM
 
     def _fly(
@@ -307,7 +414,7 @@ class Flight:
     def _thrust_share(self, time: float, estimate: Estimate) -> float:
         """Return the share of the thrust that carries payload and vehicles."""
         if self.phase is Phase.SPOOL_UP:
-            return min((time - self.takeoff_time) / self._settings.takeoff_landing.spool_up_time, 1.0)
+            return min((time - self._spool_up_start) / self._settings.takeoff_landing.spool_up_time, 1.0)
         if self._touchdown is None:
             return 1.0
         layout, ahead = self.control.controller.layout, self._settings.takeoff_landing.lean_time
@@ -324,8 +431,8 @@ class Flight:
         if self.phase is Phase.SPOOL_UP:
             if share >= 1.0:
                 assert self._pad is not None
-                position = self._pad.position(time)
-                self.mission_trajectory = MissionTrajectory(self.mission, position, time)
+                position, legs = self._pad.position(time), self.legs.flight()
+                self.mission_trajectory = MissionTrajectory(self.mission, position, time, legs, self._home)
                 self.phase = Phase.CLIMB
         elif self.phase is Phase.SPOOL_DOWN:
             if share <= 0.0:
@@ -337,6 +444,8 @@ class Flight:
                 self._touch_down(time, estimate)
 
     def _touch_down(self, time: float, estimate: Estimate) -> None:
+        assert self.mission_trajectory is not None
+        self._passed = [*self.passed, self.mission_trajectory.landing]
         layout = self.control.controller.layout
         self._touchdown = Touchdown(
             RestTrajectory(estimate.x[layout.r_0], time),
@@ -345,4 +454,5 @@ class Flight:
             self._settings.takeoff_landing,
         )
         self.control.estimator.setpoints.add(estimate.time, None)
+        self.landings += 1
         self.phase = Phase.SPOOL_DOWN

@@ -1,41 +1,54 @@
-"""Mission trajectory: one trajectory of the payload from pad to ground, made of take-off, mission and landing."""
+"""Mission trajectory: one trajectory of the payload from ground to ground, made of take-off, mission and landing."""
 
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import dropwhile
 
 import numpy as np
 
 from gcs.mission.model import Lissajous, Mission
-from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Speed, TakeOff
+from gcs.mission.route import Circle, FlyTo, GroundLeg, HoldForever, Land, Leg, TakeOff
+from gcs.mission.steps import Speed
 from idc_controller.arrays import Array
 from idc_controller.trajectory import paths
 from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
-from idc_controller.trajectory.trajectory import Trajectory
+from idc_controller.trajectory.trajectory import RestTrajectory, Trajectory
 from idc_controller.trajectory.waypoints import WaypointTrajectory
 
 
 class MissionTrajectory:
-    """Trajectory of the payload from take-off to touchdown, from ``position`` on the pad at ``start``.
+    """Trajectory of the payload from take-off to touchdown, from ``position`` on the ground at ``start``.
 
     Times are the team's (s), positions NED (m). An endless mission has no end.
     """
 
-    def __init__(self, mission: Mission, position: Array, start: float) -> None:
+    def __init__(
+        self,
+        mission: Mission,
+        position: Array,
+        start: float,
+        legs: Iterator[Leg] | None = None,
+        pad: Array | None = None,
+    ) -> None:
+        """``legs``: up to the landing; None: those of the first flight. ``pad``: None: it stands there."""
         self._settings = mission.system.flight.takeoff_landing
         self._motion = mission.system.motion
         self._ground = -mission.system.parameters().payload.below
-        self._pad = position
+        self._pad = position if pad is None else pad
         self.start = start
         self.landing_from = math.inf
         """Time at which the final descent begins (s); inf while that is not known."""
+        self.slow_from = math.inf
+        """Time at which its slow part, near the ground, begins (s); inf while that is not known."""
         self._takeoff = ""
         """Source of the take-off."""
-        climb, legs = self._split(mission, position)
+        climb, legs = self._split(mission, position, _first_flight(mission) if legs is None else legs)
         up = WaypointTrajectory(position, climb, self._motion.climb_limits, start=start)
         self._climb: Trajectory | None = up
-        along = up.then(lambda time, here: self._flown(mission, legs, time, here))
-        self.trajectory: Trajectory = along.then(self._land)
+        self._above: Trajectory = up.then(lambda time, here: self._flown(mission, legs, time, here))
+        """Up to the place above the landing."""
+        self.trajectory: Trajectory = self._above.then(self._land)
         self._braking = False
         self._sources: list[str] = []
         """Sources of the legs to waypoints that :attr:`_waypoints` has read."""
@@ -85,10 +98,11 @@ class MissionTrajectory:
         """
         if self._braking:
             return
-        self._climb, self.landing_from, self._waypoints = None, math.inf, None
+        self._climb, self._waypoints = None, None
+        self.landing_from = self.slow_from = math.inf
         self._takeoff = self.landing = ""
-        along = followed.stop(time).then(lambda t, here: self._along(legs, speed, t, here))
-        self.trajectory = along.then(self._land)
+        self._above = followed.stop(time).then(lambda t, here: self._along(legs, speed, t, here))
+        self.trajectory = self._above.then(self._land)
 
     def brake_and_land(self, followed: Trajectory, time: float) -> None:
         """Come to rest as soon as the limits allow, then land there; without effect while braking or landing.
@@ -103,16 +117,60 @@ class MissionTrajectory:
         self._climb = None
         self.trajectory = followed.stop(time).then(self._land)
 
-    def _split(self, mission: Mission, position: Array) -> tuple[list[paths.Leg], Iterator[Leg]]:
+    @property
+    def above(self) -> Array:
+        """The place above the landing (3,); only once :attr:`landing_from` is known, or while it waits."""
+        return self._above.position(self._above.end)
+
+    def is_at_rest(self, time: float) -> bool:
+        """Return whether it rests at ``time`` (s)."""
+        return not self.trajectory.derivatives(np.array([time]), 4)[1:].any()
+
+    def wait(self, followed: Trajectory, time: float) -> None:
+        """Rest above the landing place, or where the descent has come to, until it is resumed.
+
+        Args:
+            followed: the trajectory that is flown, this one or a rest where something is in the way.
+            time: where on it; from now on this trajectory goes on at that time.
+        """
+        first = self._above
+        if followed is not self.trajectory or time >= self.landing_from:
+            first = followed.stop(time)
+        self.landing_from = self.slow_from = math.inf
+        self.trajectory = first.then(lambda end, here: RestTrajectory(here, end, math.inf))
+
+    def resume_landing(self, time: float) -> None:
+        """Go back above the landing place and land, from the rest at ``time`` (s)."""
+        here, above = self.trajectory.position(time), self.above
+        self._above = WaypointTrajectory(here, [self._leg(above)], self._motion.limits, start=time)
+        self.trajectory = self._above.then(self._land)
+
+    def return_home(self, followed: Trajectory, time: float) -> None:
+        """Come to rest as soon as the limits allow, then fly home and land there; not below where it was to land from.
+
+        ``followed`` and ``time`` (s) as of :meth:`brake_and_land`.
+        """
+        top = self.above[2] if math.isfinite(self._above.end) else math.inf
+        self._climb = None
+        self.landing_from = self.slow_from = math.inf
+        self._above = followed.stop(time).then(lambda end, here: self._home(end, here, min(here[2], top)))
+        self.trajectory = self._above.then(self._land)
+
+    def _home(self, time: float, here: Array, top: float) -> Trajectory:
+        legs = [self._leg(np.array([*place[:2], top])) for place in (here, self._pad)]
+        return WaypointTrajectory(here, legs, self._motion.limits, start=time)
+
+    def _leg(self, place: Array) -> paths.Leg:
+        return paths.Leg(place, self._motion.speed)
+
+    def _split(self, mission: Mission, position: Array, legs: Iterator[Leg]) -> tuple[list[paths.Leg], Iterator[Leg]]:
         """Return the climb, and the legs that follow it."""
         if isinstance(mission.reference, Lissajous):
             altitude, delay = mission.reference.altitude, 0.0
-            legs: Iterator[Leg] = iter(())
         else:
-            legs = mission.reference.legs()
             first = next(legs)
             if not isinstance(first, TakeOff):
-                raise TypeError(f"a route begins with a take-off, not with {first}")
+                raise TypeError(f"a flight begins with a take-off, not with {first}")
             altitude, delay, self._takeoff = -first.position[2], first.delay, first.source
         top = np.array([position[0], position[1], -altitude])
         speed = self._motion.climb_speed
@@ -170,6 +228,17 @@ class MissionTrajectory:
         limits = self._motion.climb_limits
         last = paths.Leg(touch, self._motion.landing_speed)
         if here[2] >= slow[2] - self._settings.slow_margin:
+            self.slow_from = time
             return WaypointTrajectory(here, [last], limits, start=time)
         down = WaypointTrajectory(here, [paths.Leg(slow, self._motion.climb_speed)], limits, start=time)
-        return down.then(lambda t, low: WaypointTrajectory(low, [last], limits, start=t))
+        return down.then(lambda t, low: self._touch(t, low, last))
+
+    def _touch(self, time: float, low: Array, last: paths.Leg) -> Trajectory:
+        self.slow_from = time
+        return WaypointTrajectory(low, [last], self._motion.climb_limits, start=time)
+
+
+def _first_flight(mission: Mission) -> Iterator[Leg]:
+    if isinstance(mission.reference, Lissajous):
+        return iter(())
+    return dropwhile(lambda leg: isinstance(leg, GroundLeg), mission.reference.legs())

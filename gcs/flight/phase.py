@@ -17,6 +17,8 @@ class Phase(Enum):
     AUTONOMOUS_LANDING = "autonomous landing"
     SPOOL_DOWN = "spool down"
     DISARM = "disarm"
+    ON_GROUND = "on ground"
+    """Disarmed, before the first take-off, between two flights, or after the last: MAV_LANDED_STATE_ON_GROUND."""
     ENDED = "ended"
 
     __hash__ = object.__hash__  # looked up in sets for every measurement; Enum's own hashes the name, in Python

@@ -44,6 +44,14 @@ class Preflight:
         """The newest measurements of each source."""
         self._positions: dict[int, list[Array]] = {source: [] for source in (PAYLOAD, *range(len(team.links)))}
 
+    def restart(self) -> None:
+        """Begin anew on the ground after a landing."""
+        self.connect_start = self.check_start = math.nan
+        self._newest.clear()
+        self._intervals.clear()
+        for samples in self._positions.values():
+            samples.clear()
+
     def connect(self, now: float) -> bool:
         """Request what is missing at ``now`` (s, ground); return whether all vehicles have sent all."""
         # Team time jumps with the first telemetry: only the ground's clock measures the timeout.

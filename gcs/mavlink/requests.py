@@ -41,6 +41,10 @@ class Command:
         return entry.name if entry else str(self.number)
 
 
+PAYLOAD_UNIT_COMMANDS = frozenset({mavlink.MAV_CMD_DO_GRIPPER})
+"""Commands to the payload unit whose answers are kept."""
+
+
 def _payload_unit_stream(message_id: int) -> Message:
     """Return the request of a stream of the payload unit at its default rate."""
     unit, command = (px4.PAYLOAD_UNIT_SYSTEM, px4.PAYLOAD_UNIT_COMPONENT), mavlink.MAV_CMD_SET_MESSAGE_INTERVAL
@@ -56,7 +60,7 @@ class Requests:
 
     def __init__(self, system_id: int, parameters: dict[str, float], settings: LinkSettings) -> None:
         """``parameters`` takes the values of those that are wanted."""
-        self._system_id, self._parameters, self._settings = system_id, parameters, settings
+        self._system_id, self._parameters, self.settings = system_id, parameters, settings
         self._pending: dict[int, Command] = {}
         self._wanted: dict[str, float] = {}
         self._kept: set[str] = set()
@@ -64,6 +68,9 @@ class Requests:
         self._for_log = LogRequests(system_id, settings)
         self._payload_unit_wanted = False
         self._payload_unit_due = -math.inf
+        self._for_payload_unit: list[Message] = []
+        self.payload_unit_answers: dict[int, int] = {}
+        """MAV_RESULT of the payload unit by command, as it has come through this vehicle since the command was sent."""
 
     def want_payload_unit(self) -> None:
         """Request that the vehicle forwards the payload unit's telemetry here: another one may do it in its place."""
@@ -86,23 +93,31 @@ class Requests:
         self._pending[number] = command
         return command
 
+    def command_payload_unit(self, number: int, parameters: tuple[float, ...], confirmation: int) -> None:
+        """Send a command to the payload unit through this vehicle, once; ``confirmation``: how often it was sent."""
+        target, rest = (px4.PAYLOAD_UNIT_SYSTEM, px4.PAYLOAD_UNIT_COMPONENT), [0.0] * (7 - len(parameters))
+        self._for_payload_unit.append(
+            mavlink.MAVLink_command_long_message(*target, number, confirmation, *parameters, *rest)
+        )
+
     def due(self, now: float) -> list[Message]:
         """Return the requests that are to be sent at ``now``."""
-        messages = self._for_log.due(now)
+        messages = self._for_log.due(now) + self._for_payload_unit
+        self._for_payload_unit = []
         if self._payload_unit_wanted and now >= self._payload_unit_due:
-            self._payload_unit_wanted, self._payload_unit_due = False, now + self._settings.retry_interval
+            self._payload_unit_wanted, self._payload_unit_due = False, now + self.settings.retry_interval
             messages += [_PAYLOAD_UNIT_ATTITUDE, _PAYLOAD_UNIT_POSITION]
         if not (self._wanted or self._pending):
             return messages
         target = self._system_id, px4.AUTOPILOT_COMPONENT
         for name, due in self._wanted.items():
             if now >= due:
-                self._wanted[name] = now + self._settings.retry_interval
+                self._wanted[name] = now + self.settings.retry_interval
                 messages.append(mavlink.MAVLink_param_request_read_message(*target, name.encode(), -1))
         for command in [*self._pending.values()]:
             if now < command.next_try:
                 continue
-            if command.tries >= self._settings.tries:
+            if command.tries >= self.settings.tries:
                 command.state = CommandState.UNANSWERED
                 del self._pending[command.number]
                 continue
@@ -110,7 +125,7 @@ class Requests:
                 mavlink.MAVLink_command_long_message(*target, command.number, command.tries, *command.parameters)
             )
             command.tries += 1
-            command.next_try = now + self._settings.retry_interval
+            command.next_try = now + self.settings.retry_interval
         return messages
 
     @property
@@ -131,6 +146,11 @@ class Requests:
         command.result = message.result
         accepted = message.result == mavlink.MAV_RESULT_ACCEPTED
         command.state = CommandState.ACCEPTED if accepted else CommandState.REFUSED
+
+    def take_payload_unit_acknowledgement(self, message: mavlink.MAVLink_command_ack_message) -> None:
+        """Take the payload unit's answer to a command."""
+        if message.result != mavlink.MAV_RESULT_IN_PROGRESS and message.command in PAYLOAD_UNIT_COMMANDS:
+            self.payload_unit_answers[message.command] = message.result
 
     def take_value(self, message: mavlink.MAVLink_param_value_message) -> None:
         """Take the value of a parameter."""

@@ -46,7 +46,10 @@ class VehicleStatus:
     """Health of its range sensor, from SYS_STATUS."""
     parameters: dict[str, float] = field(default_factory=dict)
     texts: deque[str] = field(default_factory=lambda: deque(maxlen=20))
+    payload_text: str = ""
+    """Last STATUSTEXT of the payload's unit; empty: none."""
     _chunks: TextChunks = field(default_factory=TextChunks)
+    _payload_chunks: TextChunks = field(default_factory=TextChunks)
 
     @property
     def last_text(self) -> str:
@@ -87,6 +90,12 @@ class VehicleStatus:
         if text is not None:
             self.texts.append(text)
 
+    def take_payload_text(self, message: mavlink.MAVLink_statustext_message) -> None:
+        """Take a STATUSTEXT of the payload's unit."""
+        text = self._payload_chunks.add(message.text, message.id, message.chunk_seq)
+        if text is not None:
+            self.payload_text = text
+
 
 @dataclass
 class AddressConflict:
@@ -114,6 +123,10 @@ class VehicleLink:
         self.requests = Requests(system_id, self.status.parameters, settings)
         self.setpoints = SetpointStream(self.clock, self.status.parameters, settings)
         self._handlers = {**self.status.handlers, **self.requests.handlers}
+        self._payload_handlers: Mapping[int, Callable[[Any], None]] = {
+            mavlink.MAVLINK_MSG_ID_COMMAND_ACK: self.requests.take_payload_unit_acknowledgement,
+            mavlink.MAVLINK_MSG_ID_STATUSTEXT: self.status.take_payload_text,
+        }
         """What takes a message of the vehicle's autopilot, by message id; others are not read."""
         self.received_at = -math.inf
         """Time of the last message of any kind."""
@@ -148,6 +161,8 @@ class VehicleLink:
                         samples.append(received)
                     elif layout.message_id == _VIBRATION:
                         *_, self.status.payload_clipping, _, _ = received.fields
+                    elif (handler := self._payload_handlers.get(layout.message_id)) is not None:
+                        handler(received.message)
                 continue
             self.received_at = now
             if component != _AUTOPILOT:

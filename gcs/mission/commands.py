@@ -20,13 +20,27 @@ class Command(IntEnum):
     NAV_LOITER_TO_ALT = 31
     NAV_SPLINE_WAYPOINT = 82
     NAV_DELAY = 93
+    NAV_PAYLOAD_PLACE = 94
     CONDITION_DELAY = 112
     DO_JUMP = 177
     DO_CHANGE_SPEED = 178
+    DO_GRIPPER = 211
     JUMP_TAG = 600
     DO_JUMP_TAG = 601
     CONDITION_GATE = 4501
     """Of MAVLink's development dialect: a point to fly through, which QGroundControl writes into surveys."""
+    DO_WINCH = 42600
+
+
+class GripperAction(IntEnum):
+    """A GRIPPER_ACTION."""
+
+    RELEASE = 0
+    GRAB = 1
+
+
+WINCH_ACTIONS = {4: GripperAction.RELEASE, 6: GripperAction.GRAB, 7: GripperAction.GRAB}
+"""WINCH_ACTIONS that unload or load: DELIVER, LOAD_LINE and LOAD_PAYLOAD."""
 
 
 class Frame(IntEnum):
@@ -58,7 +72,7 @@ LEFT_OUT = frozenset({
     80, 195, 196, 197, 198, 201, 204, 205, 220, 1000, 1001,
     115,  # heading
     # other devices on board
-    181, 182, 183, 184, 187, 211, 216, 217, 218, 405, 406, 2510, 2511, 42600,
+    181, 182, 183, 184, 187, 216, 217, 218, 405, 406, 2510, 2511,
     188, 189,  # marks in the file, without an action
 })  # fmt: skip
 """Commands that concern devices which these vehicles do not have, the heading, which is kept, or nothing at all."""

@@ -16,6 +16,7 @@ from gcs.mission.commands import (
     FRAMES,
     LAST_NAVIGATION,
     LEFT_OUT,
+    WINCH_ACTIONS,
     Command,
     Frame,
     command_name,
@@ -27,6 +28,7 @@ from gcs.mission.item_parameters import (
     VERTICAL_SPEEDS,
     check_radius,
     delay,
+    gripper_action,
     repeats,
     seconds,
     speed_change,
@@ -35,12 +37,28 @@ from gcs.mission.item_parameters import (
     whole,
 )
 from gcs.mission.items import FARTHEST, ItemError, MissionItem, WaypointFile
-from gcs.mission.route import Climb, Descend, Go, Jump, Place, Return, Route, Speed, Stay, Step, Turn, Wait
+from gcs.mission.route import Route
+from gcs.mission.steps import (
+    Climb,
+    Descend,
+    Go,
+    Grip,
+    Jump,
+    Place,
+    PlacePayload,
+    Return,
+    Speed,
+    Stay,
+    Step,
+    Turn,
+    Wait,
+)
 
 LOITER_RADIUS = 5.0
 """m, of loiter turns without a radius."""
 _WITH_HEADING = (Command.NAV_WAYPOINT, Command.NAV_LOITER_UNLIM, Command.NAV_LAND, Command.NAV_TAKEOFF)
 """Commands whose param 4 is a heading."""
+_NO_CARGO = "the system file has no [[cargo]] to unload or load"
 HIGH_CLIMB = 120.0
 """m above home. Higher, an altitude above mean sea level may be one above another home."""
 
@@ -120,7 +138,7 @@ def _note_climb(items: tuple[MissionItem, ...], steps: list[Step | None], contex
     """Note the climb to the first altitude, if it is above mean sea level and home may have another one than meant."""
     home = context.file.home.altitude
     for item, step in zip(items, steps, strict=True):
-        if isinstance(step, Climb | Go | Turn | Stay) and (climb := step.place.altitude) is not None:
+        if isinstance(step, Climb | Go | Turn | Stay | PlacePayload) and (climb := step.place.altitude) is not None:
             if item.frame in AMSL_FRAMES and home is not None and (home == 0.0 or climb > HIGH_CLIMB):
                 reason = f"{home + climb:g} m above mean sea level, and home at {home:g} m"
                 context.note(item, f"altitude: {reason}: climbs {climb:g} m")
@@ -213,6 +231,40 @@ def _land(item: MissionItem, context: _Context) -> Step:
     return Descend(item.label, _place(replace(item, params=(*item.params[:6], None)), context))
 
 
+def _payload_place(item: MissionItem, context: _Context) -> Step:
+    descent_max, altitude = item.params[0] or None, item.params[6]
+    if descent_max is not None and descent_max < 0.0:
+        raise ItemError("param 1 (maximum descent)", f"{descent_max:g} m is negative")
+    if not context.system.cargo:
+        context.note(item, f"nothing to release: {_NO_CARGO}")
+    # As of a landing: 0 is the ground.
+    place = _place(item if altitude else replace(item, params=(*item.params[:6], None)), context)
+    seconds_standing, releases = context.system.flight.takeoff_landing.place_time, bool(context.system.cargo)
+    return PlacePayload(item.label, place, seconds_standing, releases, descent_max)
+
+
+def _gripper(item: MissionItem, context: _Context) -> Step:
+    return Grip(item.label, gripper_action(item), _gripper_number(item, context))
+
+
+def _winch(item: MissionItem, context: _Context) -> Step | None:
+    action = whole(item, 1, "action")
+    if action not in WINCH_ACTIONS:
+        context.note(item, f"action {action} left out: it neither delivers nor loads")
+        return None
+    return Grip(item.label, WINCH_ACTIONS[action], _gripper_number(item, context))
+
+
+def _gripper_number(item: MissionItem, context: _Context) -> int:
+    """Return the gripper of an item; 0: all."""
+    number, known = whole(item, 0, "gripper"), sorted(cargo.gripper for cargo in context.system.cargo)
+    if not known:
+        raise ItemError("command", _NO_CARGO)
+    if number and number not in known:
+        raise ItemError("param 1 (gripper)", f"{number}: the system file has {', '.join(map(str, known))}")
+    return number
+
+
 def _take_off(item: MissionItem, context: _Context) -> Step:
     altitude, resting = take_off_altitude(item), context.system.resting_altitude
     lowest = resting + context.system.guidance.navigator.ground_clearance
@@ -278,7 +330,10 @@ _COMMANDS: dict[int, Callable[[MissionItem, _Context], Step | None]] = {
     Command.NAV_TAKEOFF: _take_off,
     Command.NAV_DELAY: _delay,
     Command.CONDITION_DELAY: _delay,
+    Command.NAV_PAYLOAD_PLACE: _payload_place,
     Command.DO_CHANGE_SPEED: _change_speed,
+    Command.DO_GRIPPER: _gripper,
+    Command.DO_WINCH: _winch,
     Command.DO_JUMP: lambda item, context: _jump(item, context.indices_of_number, "target", context),
     Command.JUMP_TAG: lambda item, context: None,
     Command.DO_JUMP_TAG: lambda item, context: _jump(item, context.indices_of_tag, "tag", context),

@@ -7,78 +7,82 @@ from itertools import islice
 from operator import itemgetter
 
 from gcs.mission.fence import Fence
-from gcs.mission.route import (
-    END,
-    Circle,
+from gcs.mission.route import END, Circle, GroundLeg, Land, Leg, Position, Route, TakeOff, ends_on_ground
+from gcs.mission.steps import (
     Climb,
     Descend,
     Go,
+    Grip,
     Jump,
-    Land,
-    Leg,
-    Position,
+    PlacePayload,
     Return,
-    Route,
     RouteError,
     Stay,
     Step,
-    TakeOff,
     Turn,
 )
 
 TRIED_LEGS = 20_000
 """So many legs are tried before the flight. Legs repeat after a lap; a file has at most 10 000 items."""
 
-WAYPOINTS = (Climb, Go, Turn, Stay, Descend, Return)
+WAYPOINTS = (Climb, Go, Turn, Stay, PlacePayload, Descend, Return)
+_FLOWN = Climb | Go | Turn | Stay | PlacePayload
 
 
 def check_flow(route: Route, fence: Fence) -> tuple[list[str], list[str]]:
     """Return problems and notes, one line each without the file's name."""
     steps = route.steps
-    if not any(isinstance(step, Climb | Go | Turn | Stay) for step in steps):
+    if not any(isinstance(step, _FLOWN) for step in steps):
         return ["mission: there is no waypoint"], []
     if (jump := _loop_without_waypoint(steps)) is not None:
         return [f"{jump.source}: target: a loop without a waypoint in it would never end"], []
-    flown = _reached(steps, through_landing=False)
-    after = sorted(_reached(steps, through_landing=True) - flown)
-    if (again := next((steps[i] for i in after if isinstance(steps[i], Climb)), None)) is not None:
-        return [f"{again.source}: command: lands and takes off again: not flown yet"], []
-    if not any(isinstance(step, Climb | Go | Turn | Stay) for i, step in enumerate(steps) if i in flown):
+    flown = _reached(steps)
+    if not any(isinstance(step, _FLOWN) for i, step in enumerate(steps) if i in flown):
         return ["mission: no waypoint is ever reached"], []
     try:
         legs = list(islice(route.legs(), TRIED_LEGS))
     except RouteError as error:
-        return [f"{error.source}: altitude: {error.reason}"], []
+        return [f"{error.source}: {error.field}: {error.reason}"], []
     return list(_outside_fence(legs, fence)), list(_notes(route, flown, legs))
 
 
-def _next(steps: tuple[Step, ...], index: int, through_landing: bool) -> list[int]:
+def _next(steps: tuple[Step, ...], index: int) -> list[int]:
     """Return the indices that may follow a step; ``len(steps)`` is the end."""
     match steps[index]:
         case Jump(target=target, repeats=repeats):
             return [target] if repeats is None else [target, index + 1]
         case Stay():
             return []
-        case Descend() | Return():
-            return [index + 1] if through_landing else []
     return [index + 1]
 
 
-def _reached(steps: tuple[Step, ...], through_landing: bool) -> set[int]:
-    reached, waiting = set[int](), [0]
+def _reached(steps: tuple[Step, ...]) -> set[int]:
+    """Return the indices of the steps that are carried out.
+
+    After a landing that nothing follows, only what the grippers do is.
+    """
+    following: dict[tuple[int, Step | None], list[tuple[int, Step | None]]] = {}
+    waiting: list[tuple[int, Step | None]] = [(0, None)]
     while waiting:
-        index = waiting.pop()
-        if index in reached or index >= len(steps):
+        index, landed_by = state = waiting.pop()
+        if state in following or index >= len(steps) or ends_on_ground(step := steps[index], landed_by):
             continue
-        reached.add(index)
-        waiting += _next(steps, index, through_landing)
-    return reached
+        if isinstance(step, Descend | Return):
+            landed_by = step
+        elif isinstance(step, _FLOWN):
+            landed_by = None
+        following[state] = [(i, landed_by) for i in _next(steps, index)]
+        waiting += following[state]
+    used = {s for s in following if s[1] is None or isinstance(steps[s[0]], _FLOWN | Grip)}
+    while more := {s for s, after in following.items() if s not in used and not used.isdisjoint(after)}:
+        used |= more
+    return {index for index, _ in used}
 
 
 def _loop_without_waypoint(steps: tuple[Step, ...]) -> Jump | None:
     """Return the jump that closes a loop in which nothing is flown; None if there is none."""
     idle = [i for i, step in enumerate(steps) if not isinstance(step, WAYPOINTS)]
-    if (loop := loop_in({i: _next(steps, i, through_landing=True) for i in idle})) is None:
+    if (loop := loop_in({i: _next(steps, i) for i in idle})) is None:
         return None
     jumps = [(i, step) for i in loop if isinstance(step := steps[i], Jump) and step.target <= i]
     return max(jumps, key=itemgetter(0))[1]
@@ -103,10 +107,10 @@ def _notes(route: Route, flown: set[int], legs: list[Leg]) -> Iterator[str]:
     for i in sorted(flown):
         if isinstance(jump := steps[i], Jump) and jump.repeats is None and jump.target < i:
             yield f"{jump.source}: repeats the items from {steps[jump.target].source} on until stopped"
-    if isinstance(legs[0], TakeOff):
-        first = next(step for step in steps if step.source == legs[0].source)
-        if not isinstance(first, Climb):
-            yield f"{first.source}: no take-off before it: takes off to {-legs[0].position[2]:g} m first"
+    climbs = {step.source for step in steps if isinstance(step, Climb | PlacePayload)}
+    for source, leg in {leg.source: leg for leg in reversed(legs) if isinstance(leg, TakeOff)}.items():
+        if source not in climbs:
+            yield f"{source}: no take-off before it: takes off to {-leg.position[2]:g} m first"
     if isinstance(legs[-1], Land) and legs[-1].source == END:
         yield "end of mission: no landing in the file: returns to the pad and lands"
 
@@ -117,7 +121,7 @@ def _outside_fence(legs: list[Leg], fence: Fence) -> Iterator[str]:
         yield "geoFence: inclusion: home is outside of it"
     sources = set[str]()
     for leg in legs:
-        if leg.source in sources:
+        if leg.source in sources or isinstance(leg, GroundLeg):
             continue
         if reasons := [reason for place in _places(leg) if (reason := fence.violation(place))]:
             sources.add(leg.source)

@@ -3,9 +3,24 @@
 import math
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import islice
 
 from gcs.config import MotionConfig, SystemConfig
-from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Position, Route, TakeOff
+from gcs.mission.cargo import CargoState
+from gcs.mission.commands import GripperAction
+from gcs.mission.route import (
+    Circle,
+    FlyTo,
+    Gripper,
+    GroundLeg,
+    HoldForever,
+    Land,
+    Leg,
+    Position,
+    Route,
+    Stand,
+    TakeOff,
+)
 
 COUNTED_LEGS = 20_000
 
@@ -56,17 +71,22 @@ def flown_legs(route: Route, system: SystemConfig) -> FlownLegs:
     """Return the legs of a ``route`` in the order of flight, from the pad."""
     start: Position = (0.0, 0.0, -system.resting_altitude)
     legs = route.first_lap(COUNTED_LEGS)
+    cargo = CargoState(system)
     flown = []
     for number, leg in enumerate(legs, start=1):
         length, time, start = _measure(leg, start, system.motion)
         north, east, down = start
         speed = leg.speed if isinstance(leg, FlyTo | Circle) else None
-        flown.append(FlownLeg(number, _action(leg), north, east, -down, speed, length, time, leg.source))
-    end = End.HOLD if isinstance(legs[-1], HoldForever) else End.LANDING if isinstance(legs[-1], Land) else End.NONE
+        flown.append(FlownLeg(number, _action(leg, cargo), north, east, -down, speed, length, time, leg.source))
+        if isinstance(leg, Gripper):
+            cargo.carry_out(leg)
+    end = End.HOLD if isinstance(legs[-1], HoldForever) else End.LANDING
+    if next(islice(route.legs(), len(legs), None), None) is not None:
+        end = End.NONE
     return FlownLegs(tuple(flown), end)
 
 
-def _action(leg: Leg) -> str:
+def _action(leg: Leg, cargo: CargoState) -> str:
     match leg:
         case TakeOff(delay=delay):
             return f"wait {delay:g} s, take off" if delay else "take off"
@@ -77,7 +97,19 @@ def _action(leg: Leg) -> str:
             return f"circle {turns:g} x {radius:g} m {sense}"
         case HoldForever():
             return "hold until stopped"
+        case Stand(seconds=seconds):
+            return f"stand {seconds:g} s"
+        case Gripper():
+            return _grip(leg, cargo)
     return "land"
+
+
+def _grip(leg: Gripper, cargo: CargoState) -> str:
+    """Return ``unload gripper 1 (0.5 kg)``."""
+    numbers = sorted(cargo.moved(leg))
+    what, lacks = ("unload", "empty") if leg.action is GripperAction.RELEASE else ("load", "full")
+    name = ", ".join(map(str, numbers)) or (str(leg.gripper) if leg.gripper else "all")
+    return f"{what} gripper {name} " + (f"({cargo.mass_of(leg):g} kg)" if numbers else f"({lacks} already)")
 
 
 def _measure(leg: Leg, start: Position, motion: MotionConfig) -> tuple[float, float, Position]:
@@ -86,6 +118,8 @@ def _measure(leg: Leg, start: Position, motion: MotionConfig) -> tuple[float, fl
         length = math.tau * leg.radius * leg.turns
         speed = min(leg.speed, math.sqrt(motion.acceleration * leg.radius))
         return length, _time(length, speed, motion), leg.end(start)
+    if isinstance(leg, GroundLeg):
+        return 0.0, leg.seconds if isinstance(leg, Stand) else 0.0, start
     length = math.dist(start, leg.position)
     if isinstance(leg, FlyTo):
         vertical = abs(start[2] - leg.position[2])

@@ -6,6 +6,7 @@ Each function raises :class:`~gcs.mission.items.ItemError` with field and reason
 import math
 from typing import NamedTuple
 
+from gcs.mission.commands import GripperAction
 from gcs.mission.items import FARTHEST, ItemError, MissionItem, check_latitude_longitude
 
 GROUND_SPEEDS = (0.0, 1.0)
@@ -87,6 +88,14 @@ def speed_change(item: MissionItem) -> SpeedChange:
     if speed <= 0.0 and speed != DEFAULT_SPEED:
         raise ItemError("param 2 (speed)", f"{speed:g} m/s: it would never arrive")
     return SpeedChange(kind, speed)
+
+
+def gripper_action(item: MissionItem) -> GripperAction:
+    """Return what a gripper is to do."""
+    action = whole(item, 1, "action")
+    if action not in set(GripperAction):
+        raise ItemError("param 2 (action)", f"{action} is neither 0, release, nor 1, grab")
+    return GripperAction(action)
 
 
 def whole(item: MissionItem, index: int, name: str) -> int:

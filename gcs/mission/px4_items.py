@@ -64,7 +64,9 @@ _OTHER_DEVICES = frozenset(
     }
 )  # fmt: skip
 """Commands to devices that are left out, and marks, without a place."""
-LEFT_OUT_HERE = frozenset(LEFT_OUT) & (_ROI | {_ROI_LOCATION} | _OTHER_DEVICES)
+_CARGO = frozenset({Command.DO_GRIPPER, Command.DO_WINCH})
+"""Commands to the payload unit, which a vehicle by itself does not have."""
+LEFT_OUT_HERE = (LEFT_OUT | _CARGO) & (_ROI | {_ROI_LOCATION} | _OTHER_DEVICES)
 """Commands that are taken, as by PX4, and that do nothing here."""
 
 _COMMANDS = dict.fromkeys(PLACED_FRAMES, FLOWN_TO | _ROI | {_ROI_LOCATION}) | {

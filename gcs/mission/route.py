@@ -11,18 +11,33 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import islice
 
+from gcs.mission.commands import GripperAction
+from gcs.mission.steps import (
+    Climb,
+    Descend,
+    Go,
+    Grip,
+    Jump,
+    Place,
+    PlacePayload,
+    Return,
+    RouteError,
+    Speed,
+    Stay,
+    Step,
+    Turn,
+    Wait,
+)
+
 Position = tuple[float, float, float]
 
 END = "end of mission"
 """Source of what follows a mission that does not say how it ends."""
 
 
-# What is flown --------------------------------------------------------------------------------------------------
-
-
 @dataclass(frozen=True)
 class TakeOff:
-    """Straight up from the pad to ``position`` (NED, m), after ``delay`` seconds on the pad."""
+    """Straight up from where the payload stands to ``position`` (NED, m), after ``delay`` seconds on the pad."""
 
     position: Position
     source: str
@@ -75,107 +90,33 @@ class HoldForever:
 
 @dataclass(frozen=True)
 class Land:
-    """Straight down to the ground below ``position``, the payload's resting place (NED, m); the last leg."""
+    """Straight down to the ground below ``position``, the payload's resting place (NED, m)."""
 
     position: Position
     source: str
 
 
-Leg = TakeOff | FlyTo | Circle | HoldForever | Land
-
-
-# What is written ------------------------------------------------------------------------------------------------
-
-
 @dataclass(frozen=True)
-class Place:
-    """A place in m from home's ground point: (north, east), altitude above it. None: as it is then."""
+class Stand:
+    """Stand on the ground at ``position`` (NED, m), disarmed, for ``seconds``."""
 
-    horizontal: tuple[float, float] | None = None
-    altitude: float | None = None
-
-
-@dataclass(frozen=True)
-class Step:
-    """One step of the program; ``source`` names the line or item it comes from."""
-
+    position: Position
+    seconds: float
     source: str
 
 
 @dataclass(frozen=True)
-class Climb(Step):
-    """Take-off: straight up to the altitude, then to the place."""
+class Gripper:
+    """Release or grab what ``gripper`` holds (0: every gripper), on the ground at ``position`` (NED, m)."""
 
-    place: Place
-
-
-@dataclass(frozen=True)
-class Go(Step):
-    """Fly to a place, and hold there (s)."""
-
-    place: Place
-    hold: float = 0.0
-    spline: bool = False
+    position: Position
+    action: GripperAction
+    gripper: int
+    source: str
 
 
-@dataclass(frozen=True)
-class Turn(Step):
-    """Around a place (m)."""
-
-    place: Place
-    radius: float
-    turns: float
-    clockwise: bool
-
-
-@dataclass(frozen=True)
-class Stay(Step):
-    """Fly to a place, and hold there until stopped."""
-
-    place: Place
-
-
-@dataclass(frozen=True)
-class Wait(Step):
-    """Hold here (s)."""
-
-    seconds: float
-
-
-@dataclass(frozen=True)
-class Descend(Step):
-    """Fly to above a place, and land."""
-
-    place: Place
-
-
-@dataclass(frozen=True)
-class Return(Step):
-    """Fly to above home at the present altitude, and land."""
-
-
-@dataclass(frozen=True)
-class Speed(Step):
-    """Speed from here on (m/s); None: the route's own."""
-
-    speed: float | None
-
-
-@dataclass(frozen=True)
-class Jump(Step):
-    """Jump to the step of index ``target``, ``repeats`` times (None: always), then go on."""
-
-    target: int
-    repeats: int | None
-
-
-class RouteError(Exception):
-    """A step that cannot be flown where the program meets it: ``source`` and the reason."""
-
-    def __init__(self, source: str, reason: str) -> None:
-        super().__init__(reason)
-        self.source = source
-        self.reason = reason
+GroundLeg = Stand | Gripper
+Leg = TakeOff | FlyTo | Circle | HoldForever | Land | GroundLeg
 
 
 @dataclass(frozen=True)
@@ -191,8 +132,10 @@ class Route:
     def legs(self, start: Position | None = None) -> Iterator[Leg]:
         """Yield the legs in the order of flight, lazily: a route may be endless.
 
-        The first is a :class:`TakeOff`; the last, if there is one, a :class:`Land` or :class:`HoldForever`. A route
-        without a landing ends with one at home, or with a hold. Jumps keep their count for the whole flight.
+        A :class:`TakeOff` begins each flight, a :class:`Land` ends it; between a landing and the next take-off, before
+        the first and after the last, there may be legs on the ground, :class:`Stand` and :class:`Gripper`. The last
+        that is flown, if there is one, is a :class:`Land` or :class:`HoldForever`. A route that ends in the air is
+        continued by a landing at home, or by a hold. Jumps keep their count for the whole mission.
 
         ``start``: in the air there (NED, m), where it does not begin with a take-off; None: on the pad.
 
@@ -209,7 +152,7 @@ class Route:
                     continue
                 if lap_at.get(here) == flight.progress:  # the lap moved nothing and took no time
                     if step.repeats is None:
-                        yield HoldForever(flight.airborne(step.source), step.source)
+                        yield from flight.stop(step.source)
                         return
                     continue
                 taken[here], lap_at[here], index = count + 1, flight.progress, step.target
@@ -217,7 +160,10 @@ class Route:
             yield from flight.fly(step)
             if flight.ended:
                 return
-        yield from flight.fly(Stay(END, Place()) if self.holds_at_end else Return(END))
+        if self.holds_at_end and flight.altitude is not None:
+            yield from flight.stop(END)
+        else:
+            yield from flight.fly(Return(END))
 
     def beginning_at(self, source: str) -> Route:
         """Return the route that begins with the first step of ``source``."""
@@ -228,7 +174,7 @@ class Route:
     def first_lap(self, limit: int) -> list[Leg]:
         """Return up to ``limit`` legs; of an endless route those before an item is flown for the second time."""
         legs = list(islice(self.legs(), limit))
-        if isinstance(legs[-1], Land | HoldForever):
+        if len(legs) < limit:
             return legs
         seen = set[str]()
         for index, leg in enumerate(legs):
@@ -244,28 +190,45 @@ class _Flight:
     def __init__(self, route: Route, start: Position | None = None) -> None:
         self.route = route
         self.horizontal = (0.0, 0.0) if start is None else start[:2]
-        self.altitude = None if start is None else -start[2]  # None: on the pad
+        self.altitude = None if start is None else -start[2]  # None: on the ground
         self.speed = route.speed
         self.delay = 0.0
         self.progress = 0
         self.ended = False
+        self._landed_by: Step | None = None  # None: on the pad still
+        self._standing: list[Stand] = []  # until it is known that something follows
 
     def airborne(self, source: str) -> Position:
-        """Return the present position; an error on the pad."""
+        """Return the present position; an error on the ground."""
         if self.altitude is None:
-            raise RouteError(source, "the payload is still on the pad, and no altitude is given to take off to")
+            place = "still on the pad" if self._landed_by is None else "on the ground"
+            raise RouteError(source, "altitude", f"the payload is {place}, and no altitude is given to take off to")
         return (*self.horizontal, -self.altitude)
+
+    def stop(self, source: str) -> Iterator[Leg]:
+        """Yield the hold until stopped, and end; after a landing the payload stands already."""
+        self.ended = True
+        if self.altitude is not None or self._landed_by is None:
+            yield HoldForever(self.airborne(source), source)
 
     def fly(self, step: Step) -> Iterator[Leg]:
         """Yield the legs of one step."""
         source = step.source
+        if self.altitude is None and ends_on_ground(step, self._landed_by):
+            self.ended = True
+            return
         match step:
             case Speed(speed=speed):
                 self.speed = self.route.speed if speed is None else speed
             case Wait(seconds=seconds) if self.altitude is None:
-                self.delay += seconds
+                if self._landed_by is None:
+                    self.delay += seconds
+                else:
+                    self._standing.append(Stand(self._resting, seconds, source))
             case Wait(seconds=seconds):
                 yield from self._go(Place(), source, hold=seconds)
+            case Grip(action=action, gripper=gripper):
+                yield from self._grip(action, gripper, source)
             case Climb(place=place):
                 yield from self._go(Place(None, place.altitude), source)
                 if place.horizontal is not None and math.dist(place.horizontal, self.horizontal) > 0.05:
@@ -276,15 +239,46 @@ class _Flight:
                 yield from self._turn(step)
             case Stay(place=place):
                 yield from self._go(place, source)
-                self.ended = True
-                yield HoldForever(self.airborne(source), source)
+                yield from self.stop(source)
+            case PlacePayload():
+                yield from self._place_payload(step)
             case Descend() | Return():
                 self.airborne(source)
                 target = step.place.horizontal if isinstance(step, Descend) else (0.0, 0.0)
-                if target is not None and target != self.horizontal:
-                    yield from self._go(Place(target), source)
-                self.ended = True
-                yield Land((*self.horizontal, -self.route.resting_altitude), source)
+                yield from self._land(target, step)
+
+    @property
+    def _resting(self) -> Position:
+        return (*self.horizontal, -self.route.resting_altitude)
+
+    def _land(self, target: tuple[float, float] | None, step: Step) -> Iterator[Leg]:
+        if target is not None and target != self.horizontal:
+            yield from self._go(Place(target), step.source)
+        self.altitude, self._landed_by = None, step
+        yield Land(self._resting, step.source)
+
+    def _grip(self, action: GripperAction, gripper: int, source: str) -> Iterator[Leg]:
+        if self.altitude is not None:
+            what = "unloading" if action is GripperAction.RELEASE else "loading"
+            raise RouteError(source, "command", f"{what} in the air: the payload must land before it (NAV_LAND)")
+        yield from self._standing
+        self._standing = []
+        yield Gripper(self._resting, action, gripper, source)
+
+    def _place_payload(self, step: PlacePayload) -> Iterator[Leg]:
+        source, deepest = step.source, step.descent_max
+        if step.place.altitude is not None or self.altitude is None:
+            yield from self._go(step.place, source)
+        *_, down = self.airborne(source)
+        if deepest is not None and -down - self.route.resting_altitude > deepest:
+            reason = f"the ground is {-down - self.route.resting_altitude:.2f} m below (limit {deepest:g} m)"
+            raise RouteError(source, "param 1 (maximum descent)", reason)
+        yield from self._land(step.place.horizontal, step)
+        if step.releases:
+            yield from self._grip(GripperAction.RELEASE, 0, source)
+        if step.seconds > 0.0:
+            yield Stand(self._resting, step.seconds, source)
+        yield from self._go(Place(None, -down), source)
 
     def _go(self, place: Place, source: str, *, hold: float = 0.0, spline: bool = False) -> Iterator[Leg]:
         if self.altitude is None:
@@ -292,7 +286,9 @@ class _Flight:
                 self.airborne(source)
             self.altitude = place.altitude
             self.progress += 1
-            yield TakeOff(self.airborne(source), source, self.delay)
+            yield from self._standing
+            delay, self.delay, self._standing = self.delay, 0.0, []
+            yield TakeOff(self.airborne(source), source, delay)
             if hold == 0.0 and place.horizontal in (None, self.horizontal):
                 return
         before = self.airborne(source)
@@ -315,3 +311,17 @@ class _Flight:
         self.horizontal = circle.end(self.airborne(step.source))[:2]
         self.progress += 1
         yield circle
+
+
+def ends_on_ground(step: Step, landed_by: Step | None) -> bool:
+    """Return whether a route ends at ``step``, where the payload stands since ``landed_by`` (None: on the pad).
+
+    It is not landed again, nor held where it stands; after a return only a take-off begins another flight.
+    """
+    if landed_by is None:
+        return False
+    if isinstance(step, Stay) and step.place.altitude is None:
+        return True
+    if isinstance(landed_by, Return):
+        return isinstance(step, Go | Turn | Stay | Descend | Return | PlacePayload)
+    return isinstance(step, Descend | Return)

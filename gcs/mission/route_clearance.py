@@ -7,7 +7,7 @@ import numpy as np
 
 from gcs.mission.fence import boundary_walls
 from gcs.mission.model import Lissajous, Mission, Obstacle
-from gcs.mission.route import Circle, Route
+from gcs.mission.route import Circle, GroundLeg, Route
 from idc_controller.arrays import Array
 from idc_controller.geometry.free_space import BoundingCylinder, FreeSpace
 
@@ -80,6 +80,8 @@ def route_places(mission: Mission) -> Array:
     places: list[Array] = []
     here = np.zeros(3)
     for leg in mission.reference.first_lap(TRIED_LEGS):
+        if isinstance(leg, GroundLeg):
+            continue
         along = circle_places(leg, here) if isinstance(leg, Circle) else np.array([leg.position])
         places.append(along)
         here = along[-1]

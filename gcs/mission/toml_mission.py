@@ -19,7 +19,8 @@ from gcs.mission.items import FARTHEST, ITEM_LIMIT
 from gcs.mission.model import Fault, Limits, Lissajous, Name
 from gcs.mission.motion import WaypointsMotion
 from gcs.mission.obstacle_table import ObstacleTable
-from gcs.mission.route import Descend, Go, Place, Route, Step
+from gcs.mission.route import END, Route
+from gcs.mission.steps import Descend, Go, Place, Step
 
 DEFAULT_SEED = 1
 
@@ -113,7 +114,7 @@ def route_through(
     """Return the route from the pad through ``points`` (NED, m) at ``speed`` (m/s), to the pad or the last one."""
     steps: list[Step] = [Go(f"point {i}", Place((x, y), -z), hold) for i, (x, y, z) in enumerate(points, start=1)]
     if not return_home:
-        steps.append(Descend("end of mission", Place()))
+        steps.append(Descend(END, Place()))
     return Route(tuple(steps), speed, system.resting_altitude)
 
 

@@ -123,6 +123,8 @@ def _distances(path: Array, target: Target) -> Array:
     """Return the distances (T - 1,) (m) of the lines between the rows of ``path`` (T, 3) from a target."""
     axes = slice(2, 3) if target.is_climb else slice(0, 3)
     away = path[:, axes] - np.asarray(target.position)[axes]
+    if target.is_landing:
+        away[:, 2] = np.minimum(away[:, 2], 0.0)
     if len(away) < 2:
         return np.asarray(np.linalg.norm(away, axis=1))
     start, along = away[:-1], np.diff(away, axis=0)

@@ -60,6 +60,46 @@ def landing_figures(run: RunData) -> dict[str, Any] | None:
     }
 
 
+def stops(run: RunData) -> list[dict[str, float | None]] | None:
+    """Return the ``stops`` entry of the summary, from the truth: a row for each landing; None with fewer than two.
+
+    A landing ends with all rotors stopped. ``touchdown_s``, ``speed_mps``, ``sinking_mps``: as of
+    :func:`landing_figures`, where the payload touches the ground from that lift-off on. ``tilt_deg``, ``north_m``,
+    ``east_m``: as it stands then.
+    """
+    if run.source != "truth" or len(run.time) == 0:
+        return None
+    rotation = rotation_from_quaternion(run.payload_quaternion)
+    height = _height(run, rotation)
+    touching, airborne = height <= _TOUCHING, height > _AIRBORNE
+    stands = touching & np.all(run.thrust < _STOPPED, axis=1)
+    begins = np.flatnonzero(stands & ~np.append(False, stands[:-1]))
+    speed = np.linalg.norm(run.payload_velocity, axis=1)
+    found: list[dict[str, float | None]] = []
+    since = 0
+    for row in begins.tolist():
+        flown = since + np.flatnonzero(airborne[since:row])
+        since = row
+        if not len(flown):
+            continue
+        touched = int(flown[-1] + np.flatnonzero(touching[flown[-1] :])[0])
+        contact = touching[flown[0] : row + 1].copy()
+        contact[:-1] |= contact[1:]
+        near = flown[0] + np.flatnonzero(contact)
+        north, east, _ = run.payload_position[row].tolist()
+        found.append(
+            {
+                "touchdown_s": float(run.time[touched]),
+                "speed_mps": float(speed[near].max()),
+                "sinking_mps": float(max(run.payload_velocity[near, 2].max(), 0.0)),
+                "tilt_deg": float(np.rad2deg(np.arccos(np.clip(rotation[row, 2, 2], -1.0, 1.0)))),
+                "north_m": north,
+                "east_m": east,
+            }
+        )
+    return found if len(found) > 1 else None
+
+
 def is_set_down(landing: Mapping[str, Any]) -> bool:
     """Return whether the payload was set down safely, by the figures of :func:`landing_figures`."""
     speed = landing["speed_mps"]

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from gcs.record.landing import in_air, landing_figures, onsets
+from gcs.record.landing import in_air, landing_figures, onsets, stops
 from gcs.record.outcome import Outcome
 from gcs.record.reader import Table
 from gcs.record.run_data import RunData, position_error
@@ -105,6 +105,8 @@ def summarise(
             },
         }
     )
+    if (landings := stops(run)) is not None:
+        summary["stops"] = _rounded(landings)
     return summary
 
 

@@ -61,6 +61,9 @@ STANDING_OBSTACLE_COLUMNS = (
 # What each vehicle flew from when on, as it stood on board, and whether against the ground's intention.
 MODE_COLUMNS = ("time_s", "vehicle", "mode", "armed", "failsafe")
 
+# What the payload's grippers have done, with the mass that moved and the payload's after it.
+CARGO_COLUMNS = ("time_s", "gripper", "action", "mass_kg", "payload_mass_kg")
+
 ALARM_COLUMNS = ("time_s", "source", "code", "severity", "text")
 PHASE_COLUMNS = ("time_s", "phase")
 
@@ -78,20 +81,21 @@ def force_columns(number_of_uavs: int) -> tuple[str, ...]:
 
 
 TRUTH, OBSTACLES, MODES, ALARMS = "truth.csv", "obstacles.csv", "modes.csv", "alarms.csv"
+CARGO = "cargo.csv"
 PHASES = "phases.csv"
 REFERENCE, ESTIMATE, PLAN, STEPS = "reference.csv", "estimate.csv", "plan.csv", "steps.csv"
 FORCES, INNOVATIONS, HORIZON = "forces.csv", "innovations.csv", "horizon.csv"
 COLUMNS: Mapping[str, tuple[str, ...]] = {
     TRUTH: truth_columns(0), OBSTACLES: OBSTACLE_COLUMNS, MODES: MODE_COLUMNS, ALARMS: ALARM_COLUMNS,
     REFERENCE: REFERENCE_COLUMNS, ESTIMATE: ESTIMATE_COLUMNS, PLAN: PLAN_COLUMNS, STEPS: STEP_COLUMNS,
-    PHASES: PHASE_COLUMNS,
+    PHASES: PHASE_COLUMNS, CARGO: CARGO_COLUMNS,
     FORCES: force_columns(0), INNOVATIONS: INNOVATION_COLUMNS, HORIZON: HORIZON_COLUMNS,
 }  # fmt: skip
 """Columns that a file has; ``truth.csv`` also those of the UAVs, ``forces.csv`` those of the links."""
 LATER_COLUMNS = frozenset(ESTIMATE_SD_COLUMNS)
 """Those that a file of an earlier version may lack; they are read as nan then."""
 TEXT_COLUMNS = frozenset(
-    ("name", "shape", "kind", "mode", "phase", "source", "channel", "state", "code", "severity", "text")
+    ("name", "shape", "kind", "mode", "phase", "source", "channel", "state", "code", "severity", "text", "action")
 )
 """Columns of text in any table; all others are of numbers."""
 

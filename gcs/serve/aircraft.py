@@ -42,7 +42,9 @@ class TeamAircraft:
         self._labels: list[str] = []
         self._on_reached: Callable[[int], None] = lambda number: None
         self._reached: list[str] = []
-        """Sources of the waypoints that were reported."""
+        """Sources of the items that were reported."""
+        self._flight, self._seen = session.flight, 0
+        """The flight whose progress was reported, and how much of it."""
         self._finished = False
 
     # Arming
@@ -317,11 +319,13 @@ class TeamAircraft:
     def report_reached(self) -> None:
         """Report the items that were reached since the last call."""
         session = self.session
+        if session.flight is not self._flight:
+            self._flight, self._seen = session.flight, 0
         if not session.flies_mission:
             return
-        passed = session.passed
-        for source in passed[len(self._reached) :]:
-            self._reached.append(source)
+        passed = session.flight.passed
+        for source in passed[self._seen :]:
             if source in self._labels:
+                self._reached.append(source)
                 self._on_reached(self._labels.index(source))
-        self._finished = session.is_mission_done
+        self._seen, self._finished = len(passed), session.is_mission_done

@@ -94,7 +94,7 @@ class TeamServer:
         self._missions.register(self.dispatcher)
         streams = StreamRequests(px4.AUTOPILOT_COMPONENT, self, control, link, self.dispatcher.requests)
         CommandServer(self.aircraft, control, self, streams, self.parameters).register(self.dispatcher)
-        self._other_components = OtherComponents(_OWN, _OWN, streams)
+        self._other_components = OtherComponents(_OWN, _OWN, streams.handlers)
         ParameterServer(self.parameters, control, self._peers).register(self.dispatcher)
         FileServices().register(self.dispatcher)
         UnservedInputs(TEAM_SYSTEM, STICKS).register(self.dispatcher)

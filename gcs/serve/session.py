@@ -14,7 +14,8 @@ from gcs.flight.ground_station import GroundStation
 from gcs.flight.phase import CONTROLLED, IN_AIR, Phase
 from gcs.mavlink import px4
 from gcs.mission.model import Lissajous, Mission
-from gcs.mission.route import Climb, FlyTo, HoldForever, Land, Leg, Place, Position, Route, Stay
+from gcs.mission.route import FlyTo, HoldForever, Land, Leg, Position, Route
+from gcs.mission.steps import Climb, Place, Stay
 
 PREFLIGHT_DISARM = 10.0
 """s for which armed vehicles wait for a take-off, as COM_DISARM_PRFLT of PX4."""
@@ -62,8 +63,6 @@ class TeamSession:
         self._cleared_until = math.inf
         self._planned_speed = 0.0
         self._flies_mission = False
-        self._passed: list[str] = []
-        """Sources of what was reached of the mission before the last order."""
         self._phase = Phase.CONNECT
         self._now = 0.0
         self.closing = False
@@ -110,7 +109,7 @@ class TeamSession:
         if self.is_paused:
             record = flight.last_record
             return record is not None and math.hypot(*record.estimate.x[3:6].tolist()) < _AT_REST
-        return flight.phase is Phase.HOLD and self.next_source is None
+        return flight.phase is Phase.HOLD and flight.next_source is None
 
     @property
     def flies_mission(self) -> bool:
@@ -132,38 +131,23 @@ class TeamSession:
         return north, east, down
 
     @property
-    def passed(self) -> list[str]:
-        """Sources of the waypoints of the mission that were reached, in the order of the flight."""
-        trajectory = self.flight.mission_trajectory
-        if not self._flies_mission or trajectory is None:
-            return self._passed
-        return [*self._passed, *trajectory.passed(self._progress), *([trajectory.landing] if self._has_landed else [])]
-
-    @property
-    def next_source(self) -> str | None:
-        """Source of the waypoint that is flown to; None: there is none any more."""
-        trajectory = self.flight.mission_trajectory
-        return None if trajectory is None else trajectory.next_source(self._progress)
-
-    @property
     def is_mission_done(self) -> bool:
         """True if the whole mission was flown, and at its end landed or held for good."""
-        return self._flies_mission and (self._has_landed or self.next_source is None)
-
-    @property
-    def _has_landed(self) -> bool:
-        return self.flight.phase in (Phase.SPOOL_DOWN, Phase.DISARM, Phase.ENDED) and not self.flight.reason
-
-    @property
-    def _progress(self) -> float:
-        return self.flight.system.guidance.progress(self.flight.time)
+        flight = self.flight
+        if not self._flies_mission:
+            return False
+        if flight.phase in IN_AIR:
+            return flight.phase is Phase.HOLD and flight.next_source is None
+        return flight.legs.ended and flight.landings > 0 and not flight.reason
 
     # Orders
 
     def arm(self) -> None:
         """Begin a flight: connect anew, check, arm, and wait for a take-off."""
         self._opened.close()
+        cargo = self.flight.cargo
         self._opened = self._open_flight(self.world, True)
+        self.flight.cargo = cargo
         self.flight.may_take_off = False
         self._alarms, self._cleared_until = 0, math.inf
         self.changes += 1
@@ -195,7 +179,6 @@ class TeamSession:
         elif self._flies_mission and self.is_paused and not anew:
             self._limit_speed()
         else:
-            self._passed = self.passed
             self._fly(route.legs(self.position), route.speed)
         self._flies_mission = True
         self._set_mode(px4.MODE_MISSION)
@@ -225,7 +208,7 @@ class TeamSession:
         if not self.may_order or self.is_paused:
             return
         if self._flies_mission and speed > self._planned_speed:
-            self.first = self.next_source or ""
+            self.first = self.flight.next_source or ""
             self.fly_mission(anew=True)
         else:
             self._limit_speed()
@@ -242,12 +225,11 @@ class TeamSession:
 
     def _begin(self, mission: Mission, route: Route | Lissajous) -> None:
         self._planned_speed = route.speed if isinstance(route, Route) else math.inf
-        self.flight.mission = replace(mission, reference=route)
-        self.flight.may_take_off = True
+        self.flight.begin(replace(mission, reference=route))
 
     def _leave_mission(self, legs: list[Leg]) -> None:
         if self._flies_mission:
-            self._passed, self.first = self.passed, self.next_source or ""
+            self.first = self.flight.next_source or ""
             self._flies_mission = False
         self._fly(iter(legs), max([self._cruise_speed(), *(leg.speed for leg in legs if isinstance(leg, FlyTo))]))
 
@@ -269,7 +251,7 @@ class TeamSession:
 
     def _reset(self) -> None:
         self.first, self.speed, self._alarms = "", None, 0
-        self._flies_mission, self._passed = False, []
+        self._flies_mission = False
 
     def _wait(self) -> None:
         self.flight.may_arm = self.flight.may_take_off = False
@@ -308,6 +290,7 @@ class TeamSession:
             self.notices.append(said or "Flight ended")
         self.last_reason = flight.reason
         self._opened = self._open_flight(self.world, False)
+        self.flight.cargo = flight.cargo
         self._wait()
         self._reset()
         self._set_mode(px4.MODE_HOLD)

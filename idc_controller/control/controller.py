@@ -91,6 +91,12 @@ class IntegratedDecisionController:
         """Return the reference until the next decision, for the estimator; at first the mission itself."""
         return Reference(self.parameters, self._tracked or mission, self.load.estimate)
 
+    def start(self) -> None:
+        """Begin a flight from rest on the ground: the load stays as it was learnt."""
+        self.guidance.start()
+        self.safety.start()
+        self._tracked = None
+
     def decide(
         self,
         estimate: Estimate,

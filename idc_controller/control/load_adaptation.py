@@ -26,6 +26,16 @@ class LoadAdaptation:
             self.parameters.payload.areas, settings.period, settings.drag_limit * self._weight, settings.wind
         )
 
+    @property
+    def payload_mass(self) -> float:
+        """Mass (kg) whose weight the links carry at rest in still air, as it is learnt.
+
+        The estimated mass with the vertical disturbance force, from which it cannot be told at rest, without the drag
+        that the wind explains. While the ground may carry part of the payload it stays as it was.
+        """
+        load = self.estimate
+        return load.mass + float(load.force[2]) / self.parameters.g
+
     def release(self) -> None:
         """Let links that lean against the wind come upright: the ground holds the payload, whose weight stays."""
         share = self.settings.period / self.settings.upright_time_constant

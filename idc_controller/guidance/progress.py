@@ -61,6 +61,9 @@ class Guidance:
         """Return the trajectory to stop from at ``time``, and the progress along it (s)."""
         return mission, time
 
+    def start(self) -> None:
+        """Begin anew with the next step, from rest on the ground: a mission whose progress is time."""
+
     def restart(self, time: float, progress: float) -> None:
         """Follow another mission, whose progress is ``progress`` (s) at ``time`` (s), from the next step on."""
 
@@ -147,6 +150,15 @@ class AdaptiveGuidance(Guidance):
             return self.navigator.followed(mission), self._followed_progress(time)
         position, velocity = self._tracked.derivatives(np.array([time]), 1)[:, 0]
         return RestTrajectory(position + 0.5 * self.settings.stopping_time * velocity, time), time
+
+    def start(self) -> None:
+        """See :meth:`Guidance.start`."""
+        self.navigator.reset()
+        if self._by_sight is not None:
+            self._by_sight.start()
+        self._current = self._observed = self._tracked = self._restart = None
+        self._next_rate = self._wanted_rate = self.rate = 1.0
+        self._deflected, self.sight = False, SightLimit()
 
     def restart(self, time: float, progress: float) -> None:
         """See :meth:`Guidance.restart`."""

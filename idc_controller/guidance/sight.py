@@ -133,6 +133,10 @@ class SpeedBySight:
         """Own speed that leaves time to give way to what comes from beyond the range (m/s)."""
         return closing_speed(self._view, self._formation, self._reaction) - self.settings.closing_speed
 
+    def start(self) -> None:
+        """Forget the steps before, at rest on the ground."""
+        self.last, self.is_least, self._since = SightLimit(), False, None
+
     def compare(self, time: float, wanted: float, least: float) -> None:
         """Note the rate that is ``wanted`` without it at ``time`` (s); below ``least`` it counts as rest."""
         self.is_least = self.last.rate < wanted

@@ -47,6 +47,10 @@ class SafetyFilter(Protocol):
     report: SafetyReport
     """Outcome of the last step."""
 
+    def start(self) -> None:
+        """Begin anew with the next step, at rest on the ground: nothing is tracked any more."""
+        ...
+
     def filter(self, time: float, reference: ScaledReference, estimate: Estimate) -> PayloadTrajectory:
         """Return the trajectory to track from ``time`` (s) on; before that it is what was tracked."""
         ...
@@ -60,6 +64,9 @@ class NoObstacles:
     """The safety filter of a world without obstacles."""
 
     report = SafetyReport()
+
+    def start(self) -> None:
+        """Do nothing: it has no memory."""
 
     def filter(self, time: float, reference: ScaledReference, estimate: Estimate) -> PayloadTrajectory:
         """Return ``reference`` itself."""

@@ -46,6 +46,11 @@ class AvoidanceFilter:
         self._turn = 0
         self.report = SafetyReport()
 
+    def start(self) -> None:
+        """See :class:`~idc_controller.safety.filter_protocol.SafetyFilter`."""
+        self._pieces.clear()
+        self._trajectory, self._plan = None, None
+
     def correct(self, time: float, u: Array, estimate: Estimate) -> Array:
         """Return ``u`` itself: this filter acts on the trajectory."""
         return u

@@ -44,7 +44,8 @@ NO_SOURCE = {
     # Their cause may be anything, or is no fault of a part.
     "track_lost", "interrupted", "interrupted_twice", "simulation_lost", "connect_timeout", "parameter_mismatch",
     "already_armed", "prearm_check_failed", "position_unknown", "misplaced", "arming_failed", "disarming_failed",
-    "landing_unconfirmed", "disarmed_in_flight", "data_link_lost", "no_path", "payload_control_lost", "off_plan",
+    "landing_unconfirmed", "landing_aborted", "disarmed_in_flight", "data_link_lost", "no_path", "off_plan",
+    "payload_control_lost",
     "overturned", "impact", "climb_stalled", "descent_stalled", "obstructed", "safety_guarantee_void",
 }  # fmt: skip
 

@@ -1,7 +1,7 @@
 """The system file: read strictly, every error with its line."""
 
 import re
-from dataclasses import replace
+from dataclasses import MISSING, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +11,8 @@ from standing_obstacles import StandingObstacles
 
 from gcs.campaign.toml_text import tables_text
 from gcs.config import SystemConfig, UnusableFile, read_system
+from gcs.config.overrides import with_settings
+from gcs.config.tables import Cargo
 from gcs.errors import UnusableInput
 from gcs.flight import stack
 from idc_controller.control.mpc import ModelPredictiveController
@@ -87,11 +89,16 @@ def test_setting_outside_its_bounds_is_refused(tmp_path: Path, listed: ListedSet
         path = tmp_path / "system.toml"
         shown = [value] * len(listed.default) if isinstance(listed.default, tuple) else value
         path.write_text(f"[{listed.table}]\n{listed.key} = {shown}\n")
-        with pytest.raises(UnusableFile, match=rf"line 2: {listed.table}\.{listed.key}.*: must be (greater|less)"):
+        name = re.sub(r"\[(\w+)\]", r"\1\\[1\\]", listed.table)  # of an array its first table
+        with pytest.raises(UnusableFile) as caught:
             read_system(path)
+        reason = rf"line 2: {name}\.{listed.key}.*: must be (greater|less)"
+        assert any(re.search(reason, found) for found in caught.value.reasons), caught.value.reasons
 
 
 def declared_number(default: object) -> object:
+    if default is MISSING:
+        return 0
     return default[0] if isinstance(default, tuple) else default
 
 
@@ -186,6 +193,16 @@ def test_wrong_file_is_refused_with_line_and_key(tmp_path: Path, old: str, new: 
         ("[safety.planner]\nblocks = []", "longer than the horizon, 0 stages"),
         ("[range_sensor]\nrange_min = 10.0", "line 2: range_sensor.range_min: 10.0 m is not below range, 10.0 m"),
         ("[range_sensor]\nelevation_min_deg = 40.0", "line 2: range_sensor.elevation_min_deg: 40.0 deg is not below"),
+        ("[[cargo]]\nmass = 0.5", "line 1: cargo[1].gripper: missing key"),
+        ("[[cargo]]\ngripper = 7\nmass = 0.5", "line 2: cargo[1].gripper: must be less than or equal to 6, found 7"),
+        ("[[cargo]]\ngripper = 1\nmass = 0.0", "line 3: cargo[1].mass: must be greater than 0"),
+        ("[[cargo]]\ngripper = 1\nmass = 0.5\nloaded = 1", "line 4: cargo[1].loaded: must be a valid boolean"),
+        ("[[cargo]]\ngripper = 1\nmass = 1\n[[cargo]]\ngripper = 1\nmass = 1", "line 5: cargo[2].gripper: 1 is the"),
+        (
+            "[[cargo]]\ngripper = 1\nmass = 2\n[[cargo]]\ngripper = 2\nmass = 1.1",
+            "line 6: cargo[2].mass: 1.1 kg: payload.mass, 3.1 kg, contains a container of 0.1 kg at least and 2 kg",
+        ),
+        ("[[cargo]]\ngripper = 1\nmass = 9\nloaded = false", "cargo: a payload of 12.1 kg with all that is not loaded"),
     ],
 )
 def test_settings_that_do_not_agree_are_refused(tmp_path: Path, text: str, reason: str) -> None:
@@ -193,6 +210,21 @@ def test_settings_that_do_not_agree_are_refused(tmp_path: Path, text: str, reaso
     path.write_text(text + "\n")
     with pytest.raises(UnusableFile, match=re.escape(reason)):
         read_system(path)
+
+
+def test_default_cargo_is_part_of_the_default_payload_only(tmp_path: Path) -> None:
+    path = tmp_path / "system.toml"
+    path.write_text("[payload]\nmass = 0.5\n")
+    assert read_system(path).cargo == ()
+    path.write_text("[avoidance]\nmargin = 0.4\n")
+    assert read_system(path).cargo == SystemConfig().cargo
+    assert with_settings(SystemConfig(), {"payload.mass": 0.5}).cargo == ()
+    given = with_settings(SystemConfig(), {"cargo": [{"gripper": 3, "mass": 0.2, "loaded": False}]})
+    assert given.cargo == (Cargo(3, 0.2, loaded=False),)
+    without = with_settings(SystemConfig(), {"cargo": []})
+    assert without.cargo == ()
+    path.write_text(tables_text(without.tables()))
+    assert read_system(path) == without
 
 
 def test_file_with_several_errors_reports_every_reason(tmp_path: Path) -> None:

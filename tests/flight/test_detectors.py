@@ -45,6 +45,8 @@ class Monitored:
             mission=SimpleNamespace(system=SYSTEM),
             system=SimpleNamespace(team=SimpleNamespace(links=self.links), obstacle_map=NOTHING_SEEN),
             control=SimpleNamespace(estimator=stack.estimator(SYSTEM, MODEL)),
+            landing_place=SimpleNamespace(is_waited_for=False, taken=None),
+            ground_legs=None,
         )
         self.log, self.id_check = AlarmLog(), SystemIdCheck(N)
         self.detectors = detectors(self.flight, DEFAULTS.monitor)

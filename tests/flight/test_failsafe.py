@@ -14,6 +14,7 @@ from gcs.config.flight_settings import DEFAULTS
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.command_sequences import AutonomousLanding
 from gcs.flight.condition import Check, Moment, Reaction, System, Trigger
+from gcs.flight.delivery import DeliveryAlarm
 from gcs.flight.detectors import MonitorAlarm
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.failsafe_state import FailsafeState
@@ -71,7 +72,7 @@ def test_page_is_made_from_the_tables():
 
 
 def test_codes_are_unique():
-    codes = [row.code for row in (*Failsafe, *MonitorAlarm, *GuaranteeAlarm)]
+    codes = [row.code for row in (*Failsafe, *MonitorAlarm, *GuaranteeAlarm, *DeliveryAlarm)]
     assert len(codes) == len(set(codes))
     assert all(row.condition is not None for row in Failsafe if row.check is not Check.EVENT)
 

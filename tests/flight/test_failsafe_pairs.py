@@ -35,11 +35,13 @@ DESCENT = 10.0
 """Time (s) from AUTO.LAND until the stub's vehicles have landed, and disarmed."""
 BY_REACTION = {
     Reaction.DISARM: Failsafe.ARMING_FAILED,
+    Reaction.RETURN: Failsafe.LANDING_ABORTED,
     Reaction.BRAKE_AND_LAND: Failsafe.INTERRUPTED,
     Reaction.AUTONOMOUS_LANDING: Failsafe.TELEMETRY_LOST,
     Reaction.END_CONTROL: Failsafe.INTERRUPTED_TWICE,
 }
-REFUSED, ON_GROUND = (Phase.CONNECT, Phase.CHECK), (Phase.ARM, Phase.SPOOL_UP, Phase.DISARM)
+REFUSED = (Phase.CONNECT, Phase.CHECK, Phase.ON_GROUND)
+ON_GROUND = (Phase.ARM, Phase.SPOOL_UP, Phase.DISARM)
 WALKED = [phase for phase in Phase if phase not in (*REFUSED, Phase.ENDED, Phase.HOLD)]
 
 

@@ -9,7 +9,7 @@ import pytest
 from mission_files import CIRCLE, HOME, RETURN, TAKE_OFF, A, B, Row, area, legs, plan, read, refusal, row, wpl
 
 from gcs.mission.model import Mission
-from gcs.mission.route import FlyTo, HoldForever, Land, TakeOff
+from gcs.mission.route import FlyTo, Gripper, HoldForever, Land, Stand, TakeOff
 
 ORIGIN = f"{HOME[0]} {HOME[1]}"
 ABSOLUTE = row(16, north=10.0, alt=493.0, frame=0)
@@ -55,6 +55,10 @@ def flown(mission: Mission, at_most: int = 8) -> str:
                 words.append("hold")
             case Land():
                 words.append(f"land {north:g}")
+            case Stand(seconds=seconds):
+                words.append(f"stand {seconds:g}")
+            case Gripper(action=action, gripper=gripper):
+                words.append(f"{action.name.lower()} {gripper}")
     return ", ".join(words)
 
 
@@ -105,7 +109,17 @@ KEEPS = "altitude 0: keeps the altitude"
         (rows((0, START), (1, A), autocontinue=0), "up 5, 0@5, hold", [FIRST_ITEM, "rows 0 and 1 (NAV_TAKEOFF, NAV_WAYPOINT): autocontinue is off: holds", "row 1 (NAV_WAYPOINT): never reached", NO_ALTITUDE]),
         # after the landing
         (wpl(TAKE_OFF, A, RETURN, B), "up 5, 10@5, 0@5, land 0", ["row 4 (NAV_WAYPOINT): never reached"]),
-        (plan(TAKE_OFF, A, row(21, alt=0), B, row(18, 1, north=5.0), LAND), "up 5, 10@5, land 10", ["no radius given", "items 4, 5 and 6 (NAV_WAYPOINT, NAV_LOITER_TURNS, NAV_LAND): never reached"]),
+        (plan(TAKE_OFF, A, row(21, alt=0), B, LAND), "up 5, 10@5, land 10, up 5, 20@5, 0@5, land 0", ["item 4 (NAV_WAYPOINT): no take-off before it: takes off to 5 m first"]),
+        (plan(TAKE_OFF, A, row(21, alt=0), row(93, 5), LAND), "up 5, 10@5, land 10", ["items 4 and 5 (NAV_DELAY, NAV_LAND): never reached"]),
+        (wpl(TAKE_OFF, LAND, TAKE_OFF, LAND), "up 5, land 0, up 5, land 0", []),
+        (plan(TAKE_OFF, A, RETURN, row(93, 5), TAKE_OFF, B, RETURN), "up 5, 10@5, 0@5, land 0, stand 5, up 5, 20@5, 0@5", []),
+        (wpl(TAKE_OFF, A, row(21, alt=0), row(178, 1, 1), row(177, 1, -1)), "up 5, 10@5, land 10, up 5, 10@5, land 10, up 5, 10@5", ["row 5 (DO_JUMP): repeats the items from line 3: row 1 (NAV_TAKEOFF) on until stopped"]),
+        # grippers and winches
+        (plan(row(211, 2, 0), TAKE_OFF, A, row(21, alt=0), row(93, 3), row(211, 1, 0), row(93, 4), TAKE_OFF, RETURN), "release 2, up 5, 10@5, land 10, stand 3, release 1, stand 4, up 5", []),
+        (plan(TAKE_OFF, LAND, row(42600, 1, 4), TAKE_OFF, A, row(21, alt=0), row(42600, 1, 7)), "up 5, land 0, release 1, up 5, 10@5, land 10, grab 1", []),
+        (plan(TAKE_OFF, A, row(42600, 1, 1), row(21, alt=0)), "up 5, 10@5, land 10", ["item 3 (DO_WINCH): action 1 left out"]),
+        (plan(TAKE_OFF, row(94, north=10.0, alt=0), B, RETURN), "up 5, 10@5, land 10, release 0, stand 2, up 5, 20@5, 0@5", []),
+        (plan(TAKE_OFF, row(94, 7, north=10.0, alt=6), B, RETURN), "up 5, 10@6, land 10, release 0, stand 2, up 6, 20@5, 0@5", []),
         (wpl(TAKE_OFF, A, row(177, 6, -1), RETURN, row(178, 1, 2), B, LAND), "up 5, 10@5, 20@5, 0@5, land 0", ["rows 4 and 5 (NAV_RETURN_TO_LAUNCH, DO_CHANGE_SPEED): never reached"]),
         # fence and rally points without content
         (plan(TAKE_OFF, A, B, RETURN, geoFence={"polygon": [], "version": 1}, rallyPoints={"points": []}), SQUARE, []),
@@ -162,9 +176,12 @@ OLD = '{"MAV_AUTOPILOT": 12, "complexItems": [], "items": [], "plannedHomePositi
         (plan(TAKE_OFF, row(16, north=10.0, alt=0), **PX4), ": item 2 (NAV_WAYPOINT): altitude: 0 m: on the ground, where the payload's centre is at 0.3 m"),
         (rows((0, START), (1, row(16, north=10.0, alt=0))), ": line 3: row 1 (NAV_WAYPOINT): altitude: 0 m: on the ground, where the payload's centre is at 0.3 m"),
         (plan(row(22, alt=-1), A), ": item 1 (NAV_TAKEOFF): altitude: below ground: 1 m lower than home"),
-        (wpl(TAKE_OFF, LAND, TAKE_OFF, LAND), ": line 5: row 3 (NAV_TAKEOFF): command: lands and takes off again: not flown yet"),
-        (plan(TAKE_OFF, A, RETURN, TAKE_OFF, B, RETURN), ": item 4 (NAV_TAKEOFF): command: lands and takes off again: not flown yet"),
-        (plan(TAKE_OFF, A, row(94, north=9.0), RETURN), ": item 3 (NAV_PAYLOAD_PLACE): command: navigation that is not supported"),
+        (plan(TAKE_OFF, A, row(211, 1, 0), RETURN), ": item 3 (DO_GRIPPER): command: unloading in the air: the payload must land before it (NAV_LAND)"),
+        (plan(TAKE_OFF, LAND, TAKE_OFF, row(42600, 1, 7), RETURN), ": item 4 (DO_WINCH): command: loading in the air"),
+        (plan(TAKE_OFF, LAND, row(211, 3, 0), TAKE_OFF), ": item 3 (DO_GRIPPER): param 1 (gripper): 3: the system file has 1, 2"),
+        (plan(TAKE_OFF, LAND, row(211, 1, 5), TAKE_OFF), ": item 3 (DO_GRIPPER): param 2 (action): 5 is neither 0, release, nor 1, grab"),
+        (plan(TAKE_OFF, row(94, 2, north=9.0, alt=0), RETURN), ": item 2 (NAV_PAYLOAD_PLACE): param 1 (maximum descent): the ground is 4.70 m below (limit 2 m)"),
+        (plan(TAKE_OFF, LAND, row(16, north=9.0, alt=None)), ": item 3 (NAV_WAYPOINT): altitude: the payload is on the ground, and no altitude is given to take off to"),
         (plan(TAKE_OFF, *[row(16, north=5.0, alt=-z) for z in (1, 9, 4, 2)]), ": items 2, 3, 4 and 1 more (NAV_WAYPOINT): altitude: below ground: 1 to 9 m lower than home"),
         (with_ids(plan(TAKE_OFF, A), 1, 10**30), ": item 2: doJumpId: must be less than 4294967296, found 1000000000000000000000000000000"),
     ],

@@ -135,7 +135,7 @@ def test_spline_and_gate_are_flown_through(tmp_path: Path) -> None:
     assert [leg.spline for leg in legs(mission) if isinstance(leg, FlyTo)] == [True, False, False]
 
 
-@pytest.mark.parametrize("command", [80, 181, 183, 189, 195, 197, 200, 201, 203, 205, 206, 211, 530, 1000, 2000, 2500])
+@pytest.mark.parametrize("command", [80, 181, 183, 189, 195, 197, 200, 201, 203, 205, 206, 530, 1000, 2000, 2500])
 def test_device_commands_are_listed_as_unsupported(tmp_path: Path, command: int) -> None:
     mission = read(tmp_path, wpl(TAKE_OFF, row(command, 1, frame=2, alt=0), A, RETURN))
     assert shape(mission) == shape(read(tmp_path, wpl(TAKE_OFF, A, RETURN)))

@@ -4,6 +4,7 @@ from dataclasses import asdict
 
 from gcs.config.flight_settings import DEFAULTS
 from gcs.flight.condition import Reaction
+from gcs.flight.delivery import DeliveryAlarm
 from gcs.flight.detectors import MonitorAlarm
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.guarantee import GuaranteeAlarm
@@ -20,7 +21,7 @@ def listing() -> str:
     alarms = "\n".join(
         f"| `{row.code}` | {row.meaning.format(**asdict(DEFAULTS.monitor))} | {row.scope.value} "
         f"| {row.severity.name.lower()} | {row.action} |"
-        for row in (*MonitorAlarm, *GuaranteeAlarm)
+        for row in (*MonitorAlarm, *GuaranteeAlarm, *DeliveryAlarm)
     )
     return f"""# Failsafes and alarms
 
@@ -32,7 +33,7 @@ This page is made from the code by `make docs`. Thresholds are those of the defa
 Every condition that ends or changes a flight is a member of `Failsafe` in `gcs/flight/failsafe.py`. Of several
 conditions the one with the most severe reaction counts; a reaction that is under way gives way only to a more severe
 one. Before arming every reaction but `END_CONTROL` is `REFUSE`; until the climb, and while the vehicles are disarmed,
-it is `DISARM`.
+it is `DISARM`; between two flights, disarmed, `REFUSE` again: the next take-off is not begun.
 
 | reaction, in ascending severity | what is done |
 |---|---|
@@ -44,9 +45,9 @@ it is `DISARM`.
 
 ## Alarms
 
-What the detectors in `gcs/flight/detectors.py` and `guarantee.py` find changes nothing by itself. With the failsafes
-they are the codes of `alarms.csv` in the run folder; severities are those of MAV_SEVERITY. "Clear of the ground" is
-0.3 m above it.
+What the detectors in `gcs/flight/detectors.py`, `guarantee.py` and `delivery.py` find changes nothing by itself. With
+the failsafes they are the codes of `alarms.csv` in the run folder; severities are those of MAV_SEVERITY. "Clear of the
+ground" is 0.3 m above it.
 
 | code | meaning | evaluated | severity | what to do |
 |---|---|---|---|---|

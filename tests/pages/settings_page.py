@@ -1,7 +1,7 @@
 """``docs/settings.md``, written from the declarations: ``python tests/pages/settings_page.py`` prints it."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import MISSING, dataclass, fields
 from itertools import groupby
 from typing import Any
 
@@ -38,7 +38,12 @@ def listed_settings(values: Any = None, table: str = "") -> Iterator[ListedSetti
         value = getattr(values, field.name)
         if DERIVED_KEY in field.metadata:
             continue
-        if isinstance(value, SettingsTable):
+        if isinstance(value, tuple) and value and isinstance(value[0], SettingsTable):
+            yield from (
+                ListedSetting(f"[{field.name}]", key.name, key.default, key.metadata[METADATA_KEY])
+                for key in fields(type(value[0]))
+            )
+        elif isinstance(value, SettingsTable):
             yield from listed_settings(value, f"{table}.{field.name}" if table else field.name)
         elif METADATA_KEY in field.metadata:
             yield ListedSetting(table, field.name, value, field.metadata[METADATA_KEY])
@@ -61,6 +66,8 @@ def settings_page() -> str:
 def _value(value: Any) -> str:
     if value is None:
         return "none"
+    if value is MISSING:
+        return "required"
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, tuple):

@@ -67,6 +67,10 @@ class Disturbances:
         """Set the load, and return the forces of the wind on payload and UAVs; None: no force."""
         return None if self.of_world is None else self.of_world.act(world, now)
 
+    def is_stuck(self, gripper: int, now: float) -> bool:
+        """Return whether a gripper that is commanded ``now`` (s) is stuck."""
+        return self.of_world is not None and self.of_world.is_stuck(gripper, now)
+
     # Clocks and samples
 
     def clock_of(self, vehicle: int) -> Callable[[float], float]:

@@ -1,4 +1,4 @@
-"""Faults of the world: wind, by a simple model of drag, and a load that changes.
+"""Faults of the world: wind, by a simple model of drag, a load that changes, and grippers that are stuck.
 
 Drag is quadratic in the air's velocity against the body, along that velocity, at the centre of mass:
 F = 1/2 rho c_d A |u| u. The payload's area across the wind is made of its silhouettes along its
@@ -61,6 +61,7 @@ class WorldFaults:
         self._air = air
         self._winds = [Wind(fault) for fault in faults if isinstance(fault.settings, kinds.Wind)]
         self._loads = [fault for fault in faults if isinstance(fault.settings, kinds.PayloadMass)]
+        self._stuck = [fault for fault in faults if isinstance(fault.settings, kinds.GripperStuck)]
         self._change = 0.0
 
     def act(self, world: World | FreeWorld, now: float) -> Forces | None:
@@ -85,7 +86,17 @@ class WorldFaults:
                 total += fault.settings.change
         if total != self._change:
             self._change = total
-            world.set_payload_mass(max(world.parameters.m_0 + total, kinds.LEAST_MASS))
+            world.add_payload_mass("faults", total)
+
+    def is_stuck(self, gripper: int, now: float) -> bool:
+        """Return whether a gripper that is commanded ``now`` (s) is stuck."""
+        stuck = False
+        for fault in self._stuck:
+            if fault.settings.gripper in (kinds.ALL_GRIPPERS, gripper) and fault.schedule.at(now) is not None:
+                fault.seen += 1
+                fault.disturbed += 1
+                stuck = True
+        return stuck
 
 
 def _drag(world: World | FreeWorld, settings: AirSettings, air: Vector) -> Forces:

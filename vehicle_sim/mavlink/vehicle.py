@@ -35,6 +35,7 @@ from vehicle_sim.mavlink.aircraft import CoupledAircraft
 from vehicle_sim.mavlink.control_owner import ControlOwner
 from vehicle_sim.mavlink.free_aircraft import FreeAircraft
 from vehicle_sim.mavlink.mission_plans import CoupledPlans, MissionPlans
+from vehicle_sim.mavlink.payload_unit import PayloadUnit
 from vehicle_sim.mavlink.setpoint_server import AttitudeSetpointServer, PositionSetpointServer, SetpointServer
 from vehicle_sim.mavlink.streams import CLIENT_STREAMS, OFFSETS, default_intervals
 from vehicle_sim.mavlink.telemetry import Telemetry
@@ -68,12 +69,14 @@ class Vehicle:
         arrays: OnboardArrays | None = None,
         plans: MissionStore | None = None,
         free: bool = False,
+        unit: PayloadUnit | None = None,
     ) -> None:
         """``system_id`` 1 .. 255; rates in Hz; ``boot_time`` (s) is the zero of every ``time_boot_ms``.
 
         ``clients``: ports of clients, and whether the payload unit's messages go there, too.
         ``clock`` is what its clock shows at a time; ``arrays`` as in :class:`.Autopilot`; ``free``: it has no payload,
-        and flies by itself. ``plans``: its mission, fence and rally points, if not those of its kind.
+        and flies by itself. ``plans``: its mission, fence and rally points, if not those of its kind. ``unit``: what
+        carries out the commands to the payload unit that it forwards.
         """
         intervals = default_intervals(link.intervals, 1.0 / telemetry_rate)
         if free:
@@ -133,7 +136,8 @@ class Vehicle:
         streams = StreamRequests(px4.AUTOPILOT_COMPONENT, self.telemetry, owner, link, self.dispatcher.requests)
         of_payload_unit = StreamRequests(px4.PAYLOAD_UNIT_COMPONENT, self.telemetry, owner, link)
         CommandServer(self.aircraft, owner, self.telemetry, streams, self.parameters).register(self.dispatcher)
-        self._other_components = OtherComponents(own, own if free else payload_unit, of_payload_unit)
+        of_unit = {**of_payload_unit.handlers, **({} if unit is None else unit.handlers(system_id, owner))}
+        self._other_components = OtherComponents(own, own if free else payload_unit, of_unit)
         ParameterServer(self.parameters, owner, self._peers).register(self.dispatcher)
         FileServices().register(self.dispatcher)
         UnservedInputs(system_id, STICKS).register(self.dispatcher)

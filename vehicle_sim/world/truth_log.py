@@ -1,4 +1,4 @@
-"""``truth.csv``, ``forces.csv``, ``obstacles.csv`` and ``modes.csv``: the true state, written by the world."""
+"""``truth.csv``, ``forces.csv``, ``obstacles.csv``, ``modes.csv``, ``cargo.csv``: the true state, by the world."""
 
 from __future__ import annotations
 
@@ -9,10 +9,20 @@ from typing import TYPE_CHECKING
 from gcs.record.incomplete import IncompleteRecords
 from gcs.record.obstacle_shapes import OBSTACLE_SHAPES, write_shapes
 from gcs.record.run_folder import make_folder
-from gcs.record.tables import FORCES, MODE_COLUMNS, OBSTACLE_COLUMNS, TableWriter, force_columns, truth_columns
+from gcs.record.tables import (
+    CARGO,
+    CARGO_COLUMNS,
+    FORCES,
+    MODE_COLUMNS,
+    OBSTACLE_COLUMNS,
+    TableWriter,
+    force_columns,
+    truth_columns,
+)
 from idc_controller.arrays import Array
 
 if TYPE_CHECKING:  # the physics engine is not needed to write down what it found
+    from vehicle_sim.world.grippers import GripperAction
     from vehicle_sim.world.obstacle_bodies import Obstacle
 
 _POSE_COLUMNS = 7  # of a row of a state: position and attitude
@@ -20,7 +30,7 @@ _FORCE_DIGITS = 4  # a tenth of a millinewton
 
 
 class TruthLog:
-    """Writes ``truth.csv``; ``forces.csv``, ``obstacles.csv`` and ``modes.csv`` from their first row on.
+    """Writes ``truth.csv``; ``forces.csv``, ``obstacles.csv``, ``modes.csv`` and ``cargo.csv`` from their first row on.
 
     Rows are equal to the byte for equal states. Raises ``gcs.errors.UnusableInput`` if the folder cannot be
     written or holds a truth already; it is made if it is absent. A full disk stops the writing, not the
@@ -35,6 +45,7 @@ class TruthLog:
         self._forces = TableWriter(folder / FORCES, force_columns(number_of_uavs), incomplete, when_needed=True)
         self._obstacles = TableWriter(folder / "obstacles.csv", OBSTACLE_COLUMNS, incomplete, when_needed=True)
         self._modes = TableWriter(folder / "modes.csv", MODE_COLUMNS, incomplete, when_needed=True)
+        self._cargo = TableWriter(folder / CARGO, CARGO_COLUMNS, incomplete, when_needed=True)
         self._has_payload = payload
         self._shapes_written = False
         self._flown: dict[int, tuple[str, bool, bool]] = {}
@@ -86,9 +97,13 @@ class TruthLog:
         self._flown[vehicle] = mode, armed, failsafe
         self._modes.write([float(time), vehicle, mode, armed, failsafe])
 
+    def write_cargo(self, action: GripperAction) -> None:
+        """Append what a gripper has done."""
+        self._cargo.write([*action])
+
     def close(self) -> None:
         """Close all files; harmless when they are closed already."""
-        for table in (self._truth, self._forces, self._obstacles, self._modes):
+        for table in (self._truth, self._forces, self._obstacles, self._modes, self._cargo):
             table.close()
 
     def __enter__(self) -> TruthLog:

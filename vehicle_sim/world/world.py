@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import pybullet
 
-from gcs.config.tables import WorldConfig
+from gcs.config.tables import PAYLOAD_MASS_MIN, WorldConfig
 from idc_controller.arrays import Array
 from idc_controller.parameters import SystemParameters
 from idc_controller.rotations_float import Quaternion, Vector
@@ -48,6 +48,9 @@ class World(EngineWorld):
         check_supported(parameters)
         super().__init__(physics_hz, parameters.g, gui)
         self.parameters = parameters
+        self.payload_mass = parameters.m_0
+        """Mass of the payload now (kg)."""
+        self._added_masses: dict[str, float] = {}
         self._rest = settings.rest
         try:
             self._build(settings)
@@ -77,11 +80,16 @@ class World(EngineWorld):
     @property
     def at_rest(self) -> bool:
         """Return True if the rotors have run down and nothing moves any more."""
-        state = self.state()
-        if any(uav.thrust > self._rest.thrust for uav in state.uavs):
+        if not self.rotors_stopped:
             return False
+        state = self.state()
         velocities = [state.payload_velocity_in_world, *(uav.velocity_in_world for uav in state.uavs)]
         return max(math.hypot(*velocity) for velocity in velocities) < self._rest.speed
+
+    @property
+    def rotors_stopped(self) -> bool:
+        """Return True if the rotors have run down."""
+        return max(self.thrusts) <= self._rest.thrust
 
     def step(
         self,
@@ -131,9 +139,18 @@ class World(EngineWorld):
             place = readings.payload[0]
             pybullet.applyExternalForce(body, -1, flipped(payload_force), place, _WORLD_FRAME, client)
 
+    def add_payload_mass(self, source: str, mass: float) -> None:
+        """Add ``mass`` (kg, may be negative) to the payload's, in place of what ``source`` added before.
+
+        From the next step on; a payload is never lighter than :data:`.PAYLOAD_MASS_MIN`.
+        """
+        self._added_masses[source] = mass
+        self.set_payload_mass(max(self.parameters.m_0 + sum(self._added_masses.values()), PAYLOAD_MASS_MIN))
+
     def set_payload_mass(self, mass: float) -> None:
         """Make the payload weigh ``mass`` (kg) from the next step on; its inertia changes in proportion."""
         parameters, client, body = self.parameters, self._client, self._system.body
+        self.payload_mass = mass
         share = mass / parameters.m_0
         pybullet.changeDynamics(body, -1, mass=mass, physicsClientId=client)
         # After the mass: with that alone the engine takes the inertia of the collision shape's box.

@@ -33,7 +33,7 @@ _CODES: dict[tuple[str, ...], str] = {
     "innovation_noise sensor_noise states_unknown telemetry_incomplete attitude_wrong",
     (RANGE_SENSOR,): "range_sensor_failed range_sensor_silent range_sensor_displaced obstacle_sensing_lost",
     (SYSTEM_ID,): "id_swap duplicate_system_id",
-    (FORCE,): "covariance_reset disturbance_force process_noise plan_deviation_exceeded wind_exceeded",
+    (FORCE,): "covariance_reset disturbance_force process_noise plan_deviation_exceeded wind_exceeded unloading_failed",
     (LINK, NAVIGATION): "telemetry_timeout",
     (NAVIGATION, RANGE_SENSOR): "values_not_finite vehicle_map_offset map_offset",
 }

@@ -10,7 +10,7 @@ import numpy as np
 from gcs.config import SystemConfig
 from gcs.mission.fence import boundary_walls
 from gcs.mission.model import Mission, Obstacle
-from gcs.mission.route import FlyTo, Land, Route, TakeOff
+from gcs.mission.route import FlyTo, GroundLeg, Land, Route, TakeOff
 from idc_controller.geometry.formation import Formation
 from idc_controller.geometry.free_space import BoundingCylinder, FlightArea, FreeSpace
 from idc_controller.guidance.detour import find_detour
@@ -107,7 +107,7 @@ def places_of(mission: Mission) -> tuple[Place, ...]:
     for leg in islice(mission.reference.legs(), _MOST_LEGS):
         if isinstance(leg, TakeOff | FlyTo):
             places.append(leg.position)
-        elif not isinstance(leg, Land):
+        elif not isinstance(leg, Land | GroundLeg):
             break
     return tuple(place for i, place in enumerate(places) if not i or place != places[i - 1])
 

@@ -8,7 +8,6 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 from gcs.mavlink.messages import BROADCAST, Received
 from gcs.mavlink.services.answer import UNSUPPORTED, Answer
 from gcs.mavlink.services.dispatcher import CommandHandler, Request
-from gcs.mavlink.services.streams import StreamRequests
 
 _COMMANDS = (mavlink.MAVLINK_MSG_ID_COMMAND_LONG, mavlink.MAVLINK_MSG_ID_COMMAND_INT)
 
@@ -16,11 +15,11 @@ _COMMANDS = (mavlink.MAVLINK_MSG_ID_COMMAND_LONG, mavlink.MAVLINK_MSG_ID_COMMAND
 class OtherComponents:
     """Answers every command, so that nobody waits: the device sends messages, what is absent does nothing."""
 
-    def __init__(self, own: tuple[int, int], device: tuple[int, int], streams: StreamRequests) -> None:
-        """``own`` system and component, and those of the ``device``, with the ``streams`` of its messages."""
+    def __init__(self, own: tuple[int, int], device: tuple[int, int], handlers: Mapping[int, CommandHandler]) -> None:
+        """``own`` system and component, and those of the ``device``, with what carries out its commands."""
         self._own = own
         self._device = device
-        self._of_device: Mapping[int, CommandHandler] = streams.handlers
+        self._of_device = handlers
 
     def handle(self, received: Received, request: Request) -> None:
         """Carry out or refuse a command; the system that it is for answers. What is for nobody here is ignored."""
@@ -37,9 +36,11 @@ class OtherComponents:
 
     def _answer(self, received: Received, request: Request, answer: Answer, component: int) -> None:
         command: Any = received.message
+        if answer.text:
+            request.peer.send_statustext(answer.text, component=component)
         request.peer.reply(
             mavlink.MAVLink_command_ack_message(
-                command.command, answer.result, 0, 0, request.system, request.component
+                command.command, answer.result, 0, answer.parameter, request.system, request.component
             ),
             component=component,
         )

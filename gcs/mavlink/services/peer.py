@@ -163,16 +163,18 @@ class Peer:
             self._replies += self._codecs[component].frames(built)
             self.next_due = -math.inf
 
-    def send_statustext(self, text: str, severity: int = mavlink.MAV_SEVERITY_WARNING) -> None:
+    def send_statustext(
+        self, text: str, severity: int = mavlink.MAV_SEVERITY_WARNING, component: int = _AUTOPILOT
+    ) -> None:
         """Send a text to the operator as STATUSTEXT, a long one in chunks, of which the last has room left."""
         data = text.encode("ascii", "replace")
         if len(data) <= _TEXT_LIMIT:
-            self.reply(mavlink.MAVLink_statustext_message(severity, data))
+            self.reply(mavlink.MAVLink_statustext_message(severity, data), component=component)
             return
         self._text_id = self._text_id % _TEXT_ID_MAX + 1
         for number, start in enumerate(range(0, len(data) + 1, _TEXT_LIMIT)):
             chunk = data[start : start + _TEXT_LIMIT]
-            self.reply(mavlink.MAVLink_statustext_message(severity, chunk, self._text_id, number))
+            self.reply(mavlink.MAVLink_statustext_message(severity, chunk, self._text_id, number), component=component)
 
     def datagrams(self, sample: Sample, now: float) -> list[bytes]:
         """Return replies and what is due of ``sample``, in as few datagrams as possible."""
