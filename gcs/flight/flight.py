@@ -187,7 +187,9 @@ class Flight:
             here = flown.trajectory.position(progress) if is_descending else flown.above
             if place.look(time, here) and place.taken is not None:
                 place.waiting_since = time + max(flown.landing_from - progress, 0.0)
-                flown.wait(followed, along)
+                sensor = self.mission.system.range_sensor
+                beside = place.stand_off(-flown.above[2], math.radians(sensor.elevation_min_deg))
+                flown.wait(followed, along, min(beside, 0.5 * sensor.range))
                 guidance.restart(time, along)
 
     def _return_home(self, time: float) -> None:

@@ -50,6 +50,18 @@ class LandingPlace:
         """Return for how long (s) the payload has been waiting at ``time``."""
         return max(time - self.waiting_since, 0.0)
 
+    def stand_off(self, height: float, elevation: float) -> float:
+        """Return the level distance (m) from which vehicles see all of it, by the lower end of their field of view.
+
+        Straight above it they would not see it become free.
+
+        ``height``: of the payload above the ground (m); ``elevation`` (rad), negative: downwards.
+        """
+        offsets = self._formation.hover_offsets
+        reach = float(np.hypot(*offsets[:, :2].T).max())
+        height -= float(offsets[:, 2].min())
+        return 2.0 * reach + self._formation.disc_radius + height / max(math.tan(-elevation), 1e-3)
+
     def look(self, time: float, above: Array) -> bool:
         """Look at the way down from ``above`` (3,), if it is time to; return whether it was."""
         if time - self._looked < self._settings.landing_look_interval:

@@ -75,17 +75,19 @@ def is_smooth(trajectory, times):
 
 
 @pytest.mark.parametrize("late", [-0.5, 1.5])
-def test_payload_waits_where_it_is_and_lands_there_later(flown, late):
+@pytest.mark.parametrize("beside", [0.0, 3.0, 50.0])
+def test_payload_waits_beside_the_place_and_lands_there_later(flown, late, beside):
     when, above = flown.landing_from + late, flown.above
-    flown.wait(flown.trajectory, when)
-    assert flown.landing_from == math.inf and flown.phase(when + 20.0) == "hold" and flown.is_at_rest(when + 20.0)
-    waits = flown.trajectory.position(when + 20.0)
-    assert np.allclose(waits[:2], above[:2], atol=1e-6) and (waits[2] > above[2] + 0.1) == (late > 0.0)
-    flown.resume_landing(when + 20.0)
-    times = np.arange(when, when + 60.0, 0.02)
+    flown.wait(flown.trajectory, when, beside)
+    assert flown.landing_from == math.inf and flown.phase(when + 30.0) == "hold" and flown.is_at_rest(when + 30.0)
+    waits = flown.trajectory.position(when + 30.0)
+    assert waits[2] == pytest.approx(above[2], abs=1e-6)
+    assert math.dist(waits[:2], above[:2]) == pytest.approx(min(beside, 10.0), abs=0.15)
+    flown.resume_landing(when + 30.0)
+    times = np.arange(when, when + 90.0, 0.02)
     assert is_smooth(flown.trajectory, times)
-    end = flown.trajectory.position(when + 60.0)
-    assert np.allclose(end[:2], above[:2], atol=1e-6) and end[2] >= GROUND and flown.phase(when + 60.0) == "land"
+    end = flown.trajectory.position(when + 90.0)
+    assert np.allclose(end[:2], above[:2], atol=1e-6) and end[2] >= GROUND and flown.phase(when + 90.0) == "land"
 
 
 def test_return_leads_home_at_the_altitude_before_the_descent(flown):
