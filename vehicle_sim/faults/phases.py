@@ -7,12 +7,14 @@ spooled up. Where an obstacle or a failsafe holds the flight up, the phases of t
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
+from itertools import chain, islice
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from gcs.mission.model import Mission
+from gcs.mission.route import Leg
 from idc_controller.arrays import Array
 
 if TYPE_CHECKING:
@@ -21,6 +23,9 @@ if TYPE_CHECKING:
 
 _PLANNED = frozenset({"climb", "fly", "hold", "land"})
 _RISEN = 0.05  # m; height of the payload above its pad from which ground contact is a touchdown
+
+_MOST_LEGS = 20_000
+"""Of one flight: an endless one is not followed by another."""
 
 
 class VehicleState(NamedTuple):
@@ -46,6 +51,7 @@ class PhaseObserver:
         self._driven: set[int] = set()
         self._risen = False
         self._legs: MissionLegs | None = None
+        self._flown: Iterator[Leg] = iter(())
         self._flight, self._over = 1, False
 
     @property
@@ -117,10 +123,11 @@ class PhaseObserver:
         from gcs.flight.mission_trajectory import MissionTrajectory
 
         self._legs = self._legs or MissionLegs(self._mission)
-        for _ in self._legs.on_ground():
+        # Those of the flight before, of which a lazy trajectory may have read none, and those on the ground after it.
+        for _ in islice(chain(self._flown, self._legs.on_ground()), _MOST_LEGS):
             pass
         if not self._legs.takes_off:
             return
         spooled_up = now + self._mission.system.flight.takeoff_landing.spool_up_time
-        self._rest, legs = rest, self._legs.flight()
-        self._trajectory = MissionTrajectory(self._mission, rest, spooled_up, legs)
+        self._rest, self._flown = rest, self._legs.flight()
+        self._trajectory = MissionTrajectory(self._mission, rest, spooled_up, self._flown)
