@@ -14,7 +14,8 @@ from gcs.mission.read import read_mission
 from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.shapes import Sphere
 
-PARAMETERS = read_mission(MISSIONS / "hop.toml").system.parameters()
+MISSION = read_mission(MISSIONS / "hop.toml")
+PARAMETERS = MISSION.system.parameters()
 ABOVE = np.array([8.0, 0.0, -3.0])
 GROUND = -PARAMETERS.payload.below
 
@@ -44,13 +45,16 @@ class Obstacles:
 def test_landing_place_is_taken_by_what_is_on_the_way_down(place, taken):
     obstacles = Obstacles()
     obstacles.place = place
-    found = LandingPlace(PARAMETERS, obstacles, 0.2)
+    found = LandingPlace(MISSION, PARAMETERS, obstacles)
     assert found.look(10.0, ABOVE) and (found.taken is not None) == taken
 
 
 def test_landing_place_is_free_after_some_time_without_anything_there():
     obstacles = Obstacles()
-    place, interval = LandingPlace(PARAMETERS, obstacles, 0.2), 1.01 * DEFAULTS.takeoff_landing.landing_look_interval
+    place, interval = (
+        LandingPlace(MISSION, PARAMETERS, obstacles),
+        1.01 * DEFAULTS.takeoff_landing.landing_look_interval,
+    )
     clear, free_since = DEFAULTS.takeoff_landing.landing_clear_time, math.inf
     for k in range(60):
         time = k * interval
@@ -59,6 +63,16 @@ def test_landing_place_is_free_after_some_time_without_anything_there():
         free_since = min(free_since, time) if obstacles.place is None else math.inf
         assert place.is_free == (time - free_since >= clear), k
     assert place.is_free
+
+
+def test_place_is_seen_from_beside_by_the_steepest_rays():
+    place, elevation = LandingPlace(MISSION, PARAMETERS, Obstacles()), math.radians(-70.0)
+    for height in (1.5, 3.0, 5.0):
+        vehicle = max(np.hypot(*PARAMETERS.p[:, :2].T))
+        nearest = place.stand_off(height) - vehicle - (vehicle + PARAMETERS.disc_radius)
+        above = height + PARAMETERS.l[0] - PARAMETERS.p[0, 2]
+        assert nearest == pytest.approx(min(above / math.tan(-elevation), 5.0 - 2.0 * vehicle - 0.3), abs=1e-9)
+    assert place.stand_off(100.0) == 5.0
 
 
 @pytest.fixture
