@@ -11,7 +11,17 @@ from gcs.faults.kinds import KINDS
 _WORD_ALIKE = 0.65
 _ALIKE = 0.85
 """Least ratio of letters in common: two of three in each word, or all but a few of the whole."""
-_COMMON = ("start", "start_phase", "start_offset", "duration", "every", "times", "vehicles", "direction")
+_COMMON = (
+    "start",
+    "start_phase",
+    "start_offset",
+    "start_flight",
+    "duration",
+    "every",
+    "times",
+    "vehicles",
+    "direction",
+)
 """Keys of a fault of any kind."""
 _COMMON_ALIASES = {
     "time": "start", "begin": "start", "at": "start", "delay": "start", "length": "duration", "period": "every",

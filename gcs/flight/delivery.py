@@ -11,7 +11,8 @@ class DeliveryAlarm(ScopedAlarm):
 
     # fmt: off
     LANDING_PLACE_TAKEN = (Scope.IN_AIR, Severity.WARNING, "clear the landing place",
-        "something on the obstacle map is where the formation is to land: it holds above, and lands once it is free")
+        "something on the obstacle map is where the formation is to land: it waits where the sensors see the place, "
+        "and lands once it is free")
     UNLOADING_FAILED = (Scope.ALWAYS, Severity.WARNING, "check the gripper",
         "the payload unit does not accept the command to a gripper; or the payload's mass, {mass_time:g} s after the "
         "take-off, is more than {mass_error:.0%} off the one expected, and fits better without what a gripper was to "
@@ -37,7 +38,7 @@ class Delivery:
         flight = self._flight
         place = flight.landing_place
         if place.is_waited_for and place.taken is not None:
-            text = f"landing place taken by {place.taken.name}: holds above"
+            text = f"landing place taken by {place.taken.name}: waits"
             step.raise_alarm(place.taken.name, DeliveryAlarm.LANDING_PLACE_TAKEN, text)
         if (legs := flight.ground_legs) is None:
             return

@@ -141,7 +141,7 @@ def _obstructed(system: System, moment: Moment) -> Trigger | None:
     if not (preflight.has_positions and preflight.is_settled(moment.time)):
         return None
     found = _obstruction(system, moment.time, preflight.payload, 0.0)
-    return None if found is None else Trigger(f"on the pad, {found.lacking(0.0)}", source=found.name)
+    return None if found is None else Trigger(f"{preflight.place}, {found.lacking(0.0)}", source=found.name)
 
 
 def _obstruction(system: System, time: float, place: Array, within: float) -> Obstruction | None:
@@ -374,7 +374,8 @@ class Failsafe(AlarmCode):
         "reduce its message rates, or use a faster link; of a simulation on a busy machine lower `--speed`",
         "before arming, datagrams of one vehicle usually take more than {latency_limit} s one way")
     OBSTRUCTED = (Check.PREFLIGHT, _obstructed, Reaction.REFUSE, "clear the pad",
-        "an obstacle of the map, or one that the range sensors see, reaches into the formation on the pad")
+        "an obstacle of the map, or one that the range sensors see, reaches into the formation on the pad, or where it "
+        "has landed")
     ARMING_FAILED = (Check.COMMAND, _sequence_failed(Phase.ARM), Reaction.DISARM, "act on its STATUSTEXT",
         "a vehicle refuses OFFBOARD or arming, or all are not armed within {arm_timeout:g} s")
     DISARMING_FAILED = (Check.COMMAND, _sequence_failed(Phase.DISARM), Reaction.END_CONTROL,

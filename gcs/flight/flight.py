@@ -1,7 +1,7 @@
 """One flight, from connecting to disarming: its phases, the control step in each, and the reactions to failsafes."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from gcs.flight.preflight import Preflight
 from gcs.flight.spool import Touchdown
 from gcs.flight.team import Team
 from gcs.mission.cargo import CargoState
-from gcs.mission.model import Limits, Mission
+from gcs.mission.model import Mission
 from gcs.mission.route import Leg
 from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import Estimate, Measurement
@@ -41,9 +41,7 @@ class Flight:
         settings = self._settings
         payload, preflight = PayloadMonitor(control.controller.parameters, settings), Preflight(team, settings)
         plan = PlanMonitor(control.controller.parameters.number_of_uavs, settings.failsafe)
-        # Nearer to what stands there, the filter's deflection would make it miss the place.
-        within = max(mission.system.avoidance.margin - (mission.limits or Limits()).arrival, 0.0)
-        self.landing_place = LandingPlace(control.controller.parameters, obstacle_map, within, settings.takeoff_landing)
+        self.landing_place = LandingPlace(mission, control.controller.parameters, obstacle_map)
         self.system = System(
             team, control.estimator, control.controller.guidance, payload, preflight, plan, ImpactMonitor(team.links),
             obstacle_map, settings.failsafe, mission.system.avoidance.margin + mission.system.safety.planner.tracking,
@@ -173,41 +171,21 @@ class Flight:
         return raised is not None
 
     def _brake_and_land(self, time: float) -> None:
-        if self.mission_trajectory is not None:
-            guidance = self.system.guidance
-            followed, progress = guidance.stopping_trajectory(time, self.mission_trajectory.trajectory)
-            self.mission_trajectory.brake_and_land(followed, progress)
-            guidance.restart(time, progress)
-
-    def _watch_landing_place(self, time: float) -> None:
-        """Wait above a landing place that is taken, and land once it is free; not where a failsafe lands."""
-        flown, place, guidance = self.mission_trajectory, self.landing_place, self.system.guidance
-        if flown is None or self.failsafes.reaction is not Reaction.NONE:
-            return
-        progress = guidance.progress(time)
-        if place.is_waited_for:
-            if place.look(time, flown.above) and place.is_free and flown.is_at_rest(progress):
-                place.waiting_since = math.inf
-                flown.resume_landing(progress)
-                guidance.restart(time, progress)
-        elif flown.landing_from - self._settings.takeoff_landing.landing_look_ahead < progress < flown.slow_from:
-            followed, along = guidance.stopping_trajectory(time, flown.trajectory)
-            is_descending = progress >= flown.landing_from
-            if followed is not flown.trajectory and not is_descending:
-                return  # on its way round something else
-            here = flown.trajectory.position(progress) if is_descending else flown.above
-            if place.look(time, here) and place.taken is not None:
-                place.waiting_since = time + max(flown.landing_from - progress, 0.0)
-                flown.wait(followed, along)
-                guidance.restart(time, along)
+        if (flown := self.mission_trajectory) is not None:
+            self._leave(time, flown.brake_and_land)
 
     def _return_home(self, time: float) -> None:
-        flown, guidance = self.mission_trajectory, self.system.guidance
-        if flown is not None and self.phase in IN_AIR:
-            self.landing_place.waiting_since = math.inf
-            followed, progress = guidance.stopping_trajectory(time, flown.trajectory)
-            flown.return_home(followed, progress)
-            guidance.restart(time, progress)
+        if (flown := self.mission_trajectory) is not None and self.phase in IN_AIR:
+            self._leave(time, flown.return_home)
+
+    def _leave(self, time: float, change: Callable[[Trajectory, float], None]) -> None:
+        """Change what is flown, by a function of the trajectory that is followed and of the progress (s) along it."""
+        assert self.mission_trajectory is not None
+        self.landing_place.waiting_since = math.inf
+        guidance = self.system.guidance
+        followed, progress = guidance.stopping_trajectory(time, self.mission_trajectory.trajectory)
+        change(followed, progress)
+        guidance.restart(time, progress)
 
     # Orders
 
@@ -223,14 +201,9 @@ class Flight:
         lands the payload.
         """
         assert self.mission_trajectory is not None
-        guidance, time = self.system.guidance, self.time
-        self._passed = self.passed
-        self.legs = MissionLegs(legs)
-        followed, progress = guidance.stopping_trajectory(time, self.mission_trajectory.trajectory)
-        self.mission_trajectory.go_on(followed, progress, self.legs.flight(), speed)
-        self.landing_place.waiting_since = math.inf
-        self.is_redirected = True
-        guidance.restart(time, progress)
+        self._passed, self.legs, self.is_redirected = self.passed, MissionLegs(legs), True
+        go_on = self.mission_trajectory.go_on
+        self._leave(self.time, lambda followed, progress: go_on(followed, progress, self.legs.flight(), speed))
 
     def stand_down(self) -> None:
         """Disarm vehicles that wait on the ground, armed, for their take-off."""
@@ -274,7 +247,8 @@ class Flight:
         self._evaluate(Check.STEP, time, now)
         if self.phase in IN_AIR:
             self._evaluate(Check.IN_AIR, time, now)
-            self._watch_landing_place(time)
+            if self.mission_trajectory is not None and self.failsafes.reaction is Reaction.NONE:
+                self.landing_place.watch(time, self.mission_trajectory, self.system.guidance)
         match self.phase:
             case Phase.CONNECT:
                 self._connect(time, now)
@@ -333,7 +307,7 @@ class Flight:
             self.phase = Phase.ENDED
             return
         self.control.stop_plans.clear()
-        self.system.preflight.restart()
+        self.system.preflight.restart(landed=self.landings > 0)
         self._sequence = self.ground_legs = GroundLegs(
             self.system.team, time, self.legs.on_ground(), self.cargo, self._settings
         )

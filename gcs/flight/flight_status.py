@@ -10,12 +10,13 @@ import numpy as np
 
 from gcs.flight.control_loop import StepRecord
 from gcs.flight.flight import Flight
+from gcs.flight.mission_legs import MissionLegs
 from gcs.flight.mission_trajectory import MissionTrajectory
-from gcs.flight.phase import Phase
+from gcs.flight.phase import IN_AIR, Phase
 from gcs.mavlink.vehicle_link import VehicleLink
 from gcs.mission.flown_legs import End, flown_legs
 from gcs.mission.model import Mission
-from gcs.mission.route import Route
+from gcs.mission.route import Route, Stand
 from idc_controller.geometry.formation import Formation
 from idc_controller.geometry.obstacles import Region
 from idc_controller.safety.separation import PredictedObstacles, separations
@@ -47,7 +48,8 @@ class FlightStatus:
         self._flight, self._margin, self._range = flight, system.avoidance.margin, system.range_sensor.range
         self._formation = formation = Formation(flight.control.controller.parameters)
         self._reach = float(np.hypot(*formation.hover_offsets[:, :2].T).max()) + formation.disc_radius
-        self._planned_duration = _planned_duration(flight.mission)
+        self._planned = _planned_durations(flight.mission)
+        """Of each flight, with what is done on the ground before it, from climb to touchdown (s)."""
         self._links = [_LinkStatus(flight, link) for link in flight.system.team.links]
 
     def times(self) -> tuple[float, float]:
@@ -59,8 +61,11 @@ class FlightStatus:
         time, mission, end = flight.time, flight.mission_trajectory, flight.expected_end
         if mission is None or flight.phase is Phase.AUTONOMOUS_LANDING:
             return time - flight.takeoff_time, math.inf
-        if math.isinf(end) and not flight.reason:
-            end = mission.start + self._planned_duration
+        flown = flight.landings - (flight.phase not in IN_AIR)
+        if not flight.reason:
+            this, *others = self._planned[min(flown, len(self._planned) - 1) :]
+            end = mission.start + this.in_air if math.isinf(end) else end
+            end += sum(each.on_ground + each.in_air for each in others)
         remaining = max(end - flight.system.guidance.progress(time), 0.0)
         return time - flight.takeoff_time, time + remaining - flight.takeoff_time
 
@@ -98,14 +103,32 @@ class FlightStatus:
         return [link.figure() for link in self._links]
 
 
-def _planned_duration(mission: Mission) -> float:
-    """Return the time from the climb to touchdown at the mission's own speed (s); inf: endless, or too long."""
-    reference, system = mission.reference, mission.system
-    if isinstance(reference, Route) and flown_legs(reference, system).end is not End.LANDING:
-        return math.inf
-    trajectory = MissionTrajectory(mission, np.array([0.0, 0.0, -system.resting_altitude]), 0.0).trajectory
-    trajectory.position(_LONGEST)  # a lazy trajectory knows its end once it is evaluated there
-    return trajectory.end
+class _PlannedFlight(NamedTuple):
+    """Durations (s) of a flight: from the touchdown before it to its climb, and from there to its touchdown."""
+
+    on_ground: float
+    in_air: float
+
+
+def _planned_durations(mission: Mission) -> list[_PlannedFlight]:
+    """Return the durations of all flights at the mission's own speed; one of inf: endless, or too long."""
+    endless = [_PlannedFlight(0.0, math.inf)]
+    if isinstance(mission.reference, Route) and flown_legs(mission.reference, mission.system).end is not End.LANDING:
+        return endless
+    system, settings = mission.system, mission.system.flight.takeoff_landing
+    legs = MissionLegs.of(mission)
+    place = np.array([0.0, 0.0, -system.resting_altitude])
+    spooling = settings.spool_down_time + settings.settle_time + settings.offboard_delay + settings.spool_up_time
+    flights: list[_PlannedFlight] = []
+    while not legs.ended and sum(each.in_air for each in flights) < _LONGEST:
+        standing = sum(leg.seconds for leg in legs.on_ground() if isinstance(leg, Stand))
+        if not legs.takes_off:
+            break
+        trajectory = MissionTrajectory(mission, place, 0.0, legs.flight()).trajectory
+        trajectory.position(_LONGEST)  # a lazy trajectory knows its end once it is evaluated there
+        flights.append(_PlannedFlight(spooling + standing, trajectory.end))
+        place = np.array([*trajectory.position(_LONGEST)[:2], place[2]])
+    return flights if legs.ended else endless
 
 
 class _LinkStatus:

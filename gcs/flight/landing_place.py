@@ -4,10 +4,12 @@ import math
 
 import numpy as np
 
-from gcs.config.flight_settings import DEFAULTS, TakeoffLandingSettings
+from gcs.flight.mission_trajectory import MissionTrajectory
+from gcs.mission.model import Limits, Mission
 from idc_controller.arrays import Array
 from idc_controller.geometry.formation import Formation
 from idc_controller.geometry.obstacles import ObstacleSource
+from idc_controller.guidance.progress import Guidance
 from idc_controller.parameters import SystemParameters
 from idc_controller.safety.separation import Obstruction, obstruction
 
@@ -18,16 +20,13 @@ _SPACING = 0.3
 class LandingPlace:
     """Looks at the way down to the landing place, and measures the wait. Times are the team's (s), places NED (m)."""
 
-    def __init__(
-        self,
-        parameters: SystemParameters,
-        obstacles: ObstacleSource,
-        within: float,
-        settings: TakeoffLandingSettings = DEFAULTS.takeoff_landing,
-    ) -> None:
-        """``within``: what is nearer than that (m) to the formation there takes the place."""
-        self._formation, self._obstacles = Formation(parameters), obstacles
-        self._within, self._settings = within, settings
+    def __init__(self, mission: Mission, parameters: SystemParameters, obstacles: ObstacleSource) -> None:
+        """``obstacles``: the obstacle map."""
+        system = mission.system
+        self._formation, self._obstacles, self._sensor = Formation(parameters), obstacles, system.range_sensor
+        self._settings = system.flight.takeoff_landing
+        # Nearer to what is there, the safety filter's deflection would make it miss the place.
+        self._within = max(system.avoidance.margin - (mission.limits or Limits()).arrival, 0.0)
         self._ground = -parameters.payload.below
         self._looked = -math.inf
         self._free_since = math.inf
@@ -49,6 +48,36 @@ class LandingPlace:
     def waited(self, time: float) -> float:
         """Return for how long (s) the payload has been waiting at ``time``."""
         return max(time - self.waiting_since, 0.0)
+
+    def watch(self, time: float, flown: MissionTrajectory, guidance: Guidance) -> None:
+        """Have the payload wait before a landing place that is taken, and land once it is free; once a control step."""
+        progress = guidance.progress(time)
+        if self.is_waited_for:
+            if self.look(time, flown.above) and self.is_free and flown.is_at_rest(progress):
+                self.waiting_since = math.inf
+                flown.resume_landing(progress)
+                guidance.restart(time, progress)
+        elif flown.landing_from - self._settings.landing_look_ahead < progress < flown.slow_from:
+            followed, along = guidance.stopping_trajectory(time, flown.trajectory)
+            is_descending = progress >= flown.landing_from
+            if followed is not flown.trajectory and not is_descending:
+                return  # on its way round something else
+            here = flown.trajectory.position(progress) if is_descending else flown.above
+            if self.look(time, here) and self.taken is not None:
+                self.waiting_since = time + max(flown.landing_from - progress, 0.0)
+                flown.wait(followed, along, self.stand_off(-flown.above[2]))
+                guidance.restart(time, along)
+
+    def stand_off(self, height: float) -> float:
+        """Return the level distance (m) from which vehicles see all of it, by the lower end of their field of view.
+
+        Straight above it they would not see it become free. ``height``: of the payload above the ground (m).
+        """
+        elevation, offsets = math.radians(self._sensor.elevation_min_deg), self._formation.hover_offsets
+        reach = float(np.hypot(*offsets[:, :2].T).max())
+        height -= float(offsets[:, 2].min())
+        seen = 2.0 * reach + self._formation.disc_radius + height / max(math.tan(-elevation), 1e-3)
+        return min(seen, 0.5 * self._sensor.range)
 
     def look(self, time: float, above: Array) -> bool:
         """Look at the way down from ``above`` (3,), if it is time to; return whether it was."""

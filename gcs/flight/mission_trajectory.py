@@ -16,6 +16,9 @@ from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTraject
 from idc_controller.trajectory.trajectory import RestTrajectory, Trajectory
 from idc_controller.trajectory.waypoints import WaypointTrajectory
 
+_BACK, _BACK_STEP = 60.0, 0.1
+"""s; how far back a place is looked for from which the landing place is seen, and in which steps."""
+
 
 class MissionTrajectory:
     """Trajectory of the payload from take-off to touchdown, from ``position`` on the ground at ``start``.
@@ -126,18 +129,34 @@ class MissionTrajectory:
         """Return whether it rests at ``time`` (s)."""
         return not self.trajectory.derivatives(np.array([time]), 4)[1:].any()
 
-    def wait(self, followed: Trajectory, time: float) -> None:
-        """Rest above the landing place, or where the descent has come to, until it is resumed.
+    def wait(self, followed: Trajectory, time: float, beside: float = 0.0) -> None:
+        """Do not descend until the landing is resumed: rest where it came from, ``beside`` the landing place (m).
+
+        As far beside it as it came level, at least; where it came from below, above it.
 
         Args:
             followed: the trajectory that is flown, this one or a rest where something is in the way.
             time: where on it; from now on this trajectory goes on at that time.
+            beside: level distance from the landing place (m).
         """
-        first = self._above
+        first, place = self._above, self._beside(beside)
         if followed is not self.trajectory or time >= self.landing_from:
             first = followed.stop(time)
         self.landing_from = self.slow_from = math.inf
-        self.trajectory = first.then(lambda end, here: RestTrajectory(here, end, math.inf))
+        limits = self._motion.limits
+        aside = first.then(lambda end, here: WaypointTrajectory(here, [self._leg(place)], limits, start=end))
+        self.trajectory = aside.then(lambda end, here: RestTrajectory(here, end, math.inf))
+
+    def _beside(self, distance: float) -> Array:
+        """Return the place (3,) on the way above the landing that is ``distance`` (m) before it, or the farthest."""
+        end = self._above.end
+        times = np.append(end, np.arange(end - _BACK_STEP, max(self._above.start, end - _BACK), -_BACK_STEP))
+        way, above = self._above.derivatives(times, 0)[0], self.above
+        level = np.abs(way[:, 2] - above[2]) < self._settings.slow_margin
+        away = np.linalg.norm(way[: np.argmin(np.append(level, False)), :2] - above[:2], axis=1)
+        reached = np.flatnonzero(away >= distance)
+        north, east, _ = way[reached[0] if len(reached) else np.argmax(away)].tolist()
+        return np.array([north, east, above[2]])
 
     def resume_landing(self, time: float) -> None:
         """Go back above the landing place and land, from the rest at ``time`` (s)."""

@@ -34,6 +34,8 @@ class Preflight:
         """Whole seconds for which the first vehicle had been up when the ground began: team time counts them."""
         self.missing = ""
         """Vehicles that have not connected, else all that those which have lack of what a flight needs; empty: none."""
+        self.place = "on the pad"
+        """Where the payload stands, in words."""
         self._stamps: list[tuple[float, float] | None] = []
         """Of each vehicle when all had connected: the newest stamp, and its arrival (s)."""
         self._newest: dict[int, float] = {}
@@ -44,8 +46,10 @@ class Preflight:
         """The newest measurements of each source."""
         self._positions: dict[int, list[Array]] = {source: [] for source in (PAYLOAD, *range(len(team.links)))}
 
-    def restart(self) -> None:
-        """Begin anew on the ground after a landing."""
+    def restart(self, *, landed: bool) -> None:
+        """Begin anew: on the pad, or where the payload has ``landed``."""
+        if landed:
+            self.place = "where the payload stands"
         self.connect_start = self.check_start = math.nan
         self._newest.clear()
         self._intervals.clear()

@@ -86,7 +86,8 @@ def _start(fault: Fault) -> str:
     if fault.start_phase is None:
         return f"{fault.start:g} s"
     after = f"{fault.start_offset:g} s after " if fault.start_offset else ""
-    return f"{after}the start of {fault.start_phase.replace('_', ' ')}"
+    flight = f" of flight {fault.start_flight}" if fault.start_flight else ""
+    return f"{after}the start of {fault.start_phase.replace('_', ' ')}{flight}"
 
 
 def _fault(fault: Fault) -> str:

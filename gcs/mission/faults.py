@@ -9,7 +9,18 @@ from gcs.config.validate import Key, Suggestions
 from gcs.errors import UnusableInput
 from gcs.mission.model import Fault, Mission
 
-_KEYS = ("kind", "start", "start_phase", "start_offset", "duration", "every", "times", "vehicles", "direction")
+_KEYS = (
+    "kind",
+    "start",
+    "start_phase",
+    "start_offset",
+    "start_flight",
+    "duration",
+    "every",
+    "times",
+    "vehicles",
+    "direction",
+)
 """Keys of every fault; all others are parameters of its kind."""
 
 
@@ -79,6 +90,8 @@ def _start_problem(fault: Fault) -> tuple[str, str] | None:
         return "start_phase", "goes without start: start_offset is the time after the phase begins"
     if fault.start_offset is not None and fault.start_phase is None:
         return "start_offset", "goes with start_phase"
+    if fault.start_flight is not None and fault.start_phase is None:
+        return "start_flight", "goes with start_phase"
     return None
 
 

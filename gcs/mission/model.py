@@ -27,7 +27,7 @@ class Home:
 
 
 StartPhase = Literal[
-    "arm", "spool_up", "climb", "fly", "hold", "land", "autonomous_landing", "spool_down", "disarm"
+    "arm", "spool_up", "climb", "fly", "hold", "land", "autonomous_landing", "spool_down", "disarm", "on_ground"
 ]  # fmt: skip
 """Phases of a flight that the simulator knows, by the names of :class:`gcs.flight.phase.Phase`."""
 
@@ -70,7 +70,8 @@ class Fault:
     """Something that goes wrong.
 
     It starts ``start`` s after take-off begins, which is when the first vehicle lifts off, or ``start_offset`` s (None:
-    at once) after the flight enters ``start_phase`` for the first time; times are in s.
+    at once) after the flight enters ``start_phase`` for the first time; times are in s. ``start_flight``: the number of
+    that flight, from take-off to landing, of a mission with several (None: the first).
 
     ``vehicles`` None: all of them. ``duration`` None: to the end. ``every``: it comes again at this period, ``times``
     times in all (None: without end). ``direction`` None: the kind's own. ``settings`` are the kind's parameters as
@@ -88,6 +89,14 @@ class Fault:
     line: int = 1
     start_phase: StartPhase | None = None
     start_offset: NotNegative | None = None
+    start_flight: Annotated[int, Field(ge=1, le=1_000_000)] | None = None
+
+    @property
+    def start_key(self) -> str | None:
+        """The phase in which it starts, with the number of the flight if that is not the first; None: in none."""
+        if self.start_phase is None or self.start_flight in (None, 1):
+            return self.start_phase
+        return f"{self.start_phase} {self.start_flight}"
 
 
 @strict

@@ -9,6 +9,7 @@ from typing import get_args
 import numpy as np
 import pytest
 from fault_injection import SYSTEM
+from mission_files import TAKE_OFF, read, row, wpl
 from rich.console import Console
 
 from gcs.app.cli import main
@@ -54,13 +55,44 @@ def test_phases_follow_from_vehicles_ground_contact_and_the_mission():
     for time in np.arange(4.0, 16.0, 0.02).tolist():
         times |= observer.observe(time, [ON, ON], UP, standing=False)
     assert [*times] == ["hold", "fly", "land"]
-    assert observer.pending == {"autonomous_landing", "spool_down", "disarm"}
+    assert observer.pending == {"autonomous_landing", "spool_down", "disarm", "on_ground"}
     assert observer.observe(17.0, [ON, ALONE], UP, standing=False) == {"autonomous_landing": 17.0}
     assert observer.observe(18.0, [ON, ON], PAD, standing=True) == {"spool_down": 18.0}
     assert observer.observe(19.0, [ON, OFF], PAD, standing=False) == {}
     assert observer.observe(19.1, [ON, ON], PAD, standing=True) == {}
     assert observer.observe(20.0, [ON, IDLE], PAD, standing=True) == {"disarm": 20.0}
+    assert observer.observe(21.0, [OFF, OFF], PAD, standing=True) == {"on_ground": 21.0}
     assert not observer.pending
+
+
+def test_phases_of_the_second_flight_have_its_number(tmp_path):
+    mission = read(tmp_path, wpl(TAKE_OFF, row(21, alt=0), row(93, 5), TAKE_OFF, row(21, alt=0)))
+    names = "arm", "land", "on_ground", "arm 2", "spool_up 2", "climb 2", "land 2", "on_ground 2"
+    observer, found = PhaseObserver(mission, names), {}
+
+    def observe(begin, end, states, payload, *, standing):
+        for time in np.arange(begin, end, 0.02).tolist():
+            found.update(observer.observe(time, states, payload, standing=standing))
+
+    for start in (0.0, 40.0):
+        observe(start, start + 1.0, [IDLE], PAD, standing=True)
+        observe(start + 1.0, start + 3.5, [ON], PAD, standing=True)
+        observe(start + 3.5, start + 20.0, [ON], UP, standing=False)
+        observe(start + 20.0, start + 21.0, [ON], PAD, standing=True)
+        observe(start + 21.0, start + 22.0, [IDLE], PAD, standing=True)
+        observe(start + 22.0, start + 24.0, [OFF], PAD, standing=True)
+    assert [*found] == [*names]
+    times = {name: round(time, 1) for name, time in found.items()}
+    assert times["on_ground"] == 22.0 and times["spool_up 2"] == 41.0 and times["on_ground 2"] == 62.0
+    assert times["climb 2"] == 41.0 + SYSTEM.flight.takeoff_landing.spool_up_time
+    assert 43.5 < times["land 2"] < 60.0
+
+
+def test_fault_of_the_second_flight_starts_in_it():
+    fault = partition("climb", 0.5, start_flight=2)
+    assert fault.start_key == "climb 2" and partition("climb", start_flight=1).start_key == "climb"
+    injector = FaultInjector([fault], 1, SYSTEM, read_mission(HOP_NORTH))
+    assert injector.phases.pending == {"climb 2"}
 
 
 def test_rotors_that_stop_before_lift_off_end_the_flight_without_a_landing():
@@ -142,6 +174,7 @@ def test_phases_of_the_simulator_are_those_of_the_ground_within_two_control_step
         assert flight.result().summary["completed"]
     record = json.loads((tmp_path / "run" / "faults.json").read_text())
     assert record["phases_s"].keys() == {*awaited}
+    entered["on_ground"] = entered["ended"]  # after the last flight
     for name, time in record["phases_s"].items():
         if name != "arm":  # the ground's phase begins with set-points, before the first vehicle is armed
             assert time == pytest.approx(entered[name], abs=0.1), name

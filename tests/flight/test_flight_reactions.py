@@ -50,6 +50,14 @@ def test_flight_that_has_not_begun_is_refused(phase):
     assert flight.ended and not flight.landed
 
 
+def test_interrupt_between_two_flights_ends_the_mission_where_it_stands():
+    flight = Watched(Phase.ON_GROUND)
+    flight._ending = SimpleNamespace(done=True)  # the vehicles have disarmed
+    flight.fails(Failsafe.INTERRUPTED)
+    assert (flight.phase, flight.commands, flight.reason) == (Phase.ENDED, [], "a reason")
+    assert flight.landed and not flight.completed and flight.failsafes.interrupted
+
+
 @pytest.mark.parametrize("phase", [Phase.ARM, Phase.SPOOL_UP])
 def test_vehicles_still_on_the_ground_are_disarmed(phase):
     flight = Watched(phase)

@@ -14,7 +14,8 @@ from gcs.mission.read import read_mission
 from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.shapes import Sphere
 
-PARAMETERS = read_mission(MISSIONS / "hop.toml").system.parameters()
+MISSION = read_mission(MISSIONS / "hop.toml")
+PARAMETERS = MISSION.system.parameters()
 ABOVE = np.array([8.0, 0.0, -3.0])
 GROUND = -PARAMETERS.payload.below
 
@@ -44,13 +45,16 @@ class Obstacles:
 def test_landing_place_is_taken_by_what_is_on_the_way_down(place, taken):
     obstacles = Obstacles()
     obstacles.place = place
-    found = LandingPlace(PARAMETERS, obstacles, 0.2)
+    found = LandingPlace(MISSION, PARAMETERS, obstacles)
     assert found.look(10.0, ABOVE) and (found.taken is not None) == taken
 
 
 def test_landing_place_is_free_after_some_time_without_anything_there():
     obstacles = Obstacles()
-    place, interval = LandingPlace(PARAMETERS, obstacles, 0.2), 1.01 * DEFAULTS.takeoff_landing.landing_look_interval
+    place, interval = (
+        LandingPlace(MISSION, PARAMETERS, obstacles),
+        1.01 * DEFAULTS.takeoff_landing.landing_look_interval,
+    )
     clear, free_since = DEFAULTS.takeoff_landing.landing_clear_time, math.inf
     for k in range(60):
         time = k * interval
@@ -59,6 +63,16 @@ def test_landing_place_is_free_after_some_time_without_anything_there():
         free_since = min(free_since, time) if obstacles.place is None else math.inf
         assert place.is_free == (time - free_since >= clear), k
     assert place.is_free
+
+
+def test_place_is_seen_from_beside_by_the_steepest_rays():
+    place, elevation = LandingPlace(MISSION, PARAMETERS, Obstacles()), math.radians(-70.0)
+    for height in (1.5, 3.0, 5.0):
+        vehicle = max(np.hypot(*PARAMETERS.p[:, :2].T))
+        nearest = place.stand_off(height) - vehicle - (vehicle + PARAMETERS.disc_radius)
+        above = height + PARAMETERS.l[0] - PARAMETERS.p[0, 2]
+        assert nearest == pytest.approx(min(above / math.tan(-elevation), 5.0 - 2.0 * vehicle - 0.3), abs=1e-9)
+    assert place.stand_off(100.0) == 5.0
 
 
 @pytest.fixture
@@ -75,17 +89,19 @@ def is_smooth(trajectory, times):
 
 
 @pytest.mark.parametrize("late", [-0.5, 1.5])
-def test_payload_waits_where_it_is_and_lands_there_later(flown, late):
+@pytest.mark.parametrize("beside", [0.0, 3.0, 50.0])
+def test_payload_waits_beside_the_place_and_lands_there_later(flown, late, beside):
     when, above = flown.landing_from + late, flown.above
-    flown.wait(flown.trajectory, when)
-    assert flown.landing_from == math.inf and flown.phase(when + 20.0) == "hold" and flown.is_at_rest(when + 20.0)
-    waits = flown.trajectory.position(when + 20.0)
-    assert np.allclose(waits[:2], above[:2], atol=1e-6) and (waits[2] > above[2] + 0.1) == (late > 0.0)
-    flown.resume_landing(when + 20.0)
-    times = np.arange(when, when + 60.0, 0.02)
+    flown.wait(flown.trajectory, when, beside)
+    assert flown.landing_from == math.inf and flown.phase(when + 30.0) == "hold" and flown.is_at_rest(when + 30.0)
+    waits = flown.trajectory.position(when + 30.0)
+    assert waits[2] == pytest.approx(above[2], abs=1e-6)
+    assert math.dist(waits[:2], above[:2]) == pytest.approx(min(beside, 10.0), abs=0.15)
+    flown.resume_landing(when + 30.0)
+    times = np.arange(when, when + 90.0, 0.02)
     assert is_smooth(flown.trajectory, times)
-    end = flown.trajectory.position(when + 60.0)
-    assert np.allclose(end[:2], above[:2], atol=1e-6) and end[2] >= GROUND and flown.phase(when + 60.0) == "land"
+    end = flown.trajectory.position(when + 90.0)
+    assert np.allclose(end[:2], above[:2], atol=1e-6) and end[2] >= GROUND and flown.phase(when + 90.0) == "land"
 
 
 def test_return_leads_home_at_the_altitude_before_the_descent(flown):

@@ -60,7 +60,7 @@ class Disturbances:
             return
         entered = self.phases.observe(now, vehicles, world.states()[0, :3], standing=world.touching_ground())
         for fault in self.faults:
-            if fault.fault.start_phase in entered:
+            if fault.fault.start_key in entered:
                 fault.schedule.origin = now
 
     def disturb(self, world: World | FreeWorld, now: float) -> Forces | None:

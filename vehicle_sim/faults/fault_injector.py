@@ -42,7 +42,7 @@ class FaultInjector(Disturbances):
         Raises :class:`gcs.errors.UnusableInput` for a fault that no mission could name.
         """
         super().__init__()
-        if phases := {fault.start_phase for fault in faults if fault.start_phase is not None}:
+        if phases := {key for fault in faults if (key := fault.start_key) is not None}:
             if mission is None:
                 raise UnusableInput("faults that start in a phase need the mission that is flown")
             self.phases = PhaseObserver(mission, phases)
@@ -97,7 +97,7 @@ def faults_record(injector: FaultInjector, end: float) -> dict[str, Any]:
                 "kind": fault.fault.kind,
                 "line": fault.fault.line,
                 "start": fault.schedule.start,
-                "start_phase": fault.fault.start_phase,
+                "start_phase": fault.fault.start_key,
                 "vehicles": list(fault.vehicles) if fault.kind.of_vehicles else None,
                 "direction": fault.direction,
                 "occurrences": (happened := fault.schedule.occurrences(end, _LISTED))[0],
