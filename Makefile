@@ -121,6 +121,7 @@ docs: $(INSTALLED)
 	$(VENV)/bin/python tests/pages/failsafes_page.py > docs/failsafes.md
 	$(VENV)/bin/python tests/pages/autopilots_page.py > docs/autopilots.md
 	$(VENV)/bin/python tests/pages/kinds_page.py docs/faults.md
+	$(VENV)/bin/python tests/pages/links_page.py docs/links.md
 	$(VENV)/bin/python -m vehicle_sim.mavlink.services_page > docs/services.md
 	$(VENV)/bin/python tests/packaging/notice.py > NOTICE
 
