@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from small_campaign import InThisThread
 
 from gcs.app.cli import main
 from gcs.app.commands import reproduce as command
@@ -104,6 +105,7 @@ def short_plan(quick):
 
 def test_command_fills_a_folder(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(command, "plan", short_plan)
+    monkeypatch.setattr("gcs.reproduce.work.WorkerProcesses", InThisThread)
     out = tmp_path / "deep" / "out"
     assert main(["reproduce", "--quick", "--out", str(out), "--jobs", "1"]) == 0
     said = capsys.readouterr().out
