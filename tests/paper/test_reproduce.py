@@ -97,9 +97,9 @@ def short_plan(quick):
     kept = {}
     for key, case in whole.cases.items():
         if key[0] in ("tracking", "avoidance"):
-            kept[key] = replace(case, duration=0.4)
-        elif key[1] in ("printed_2.7", "printed_3", "printed_0.25", "printed_0.008_1"):
             kept[key] = replace(case, duration=0.2)
+        elif key[1] in ("printed_2.7", "printed_3", "printed_0.25", "printed_0.008_1"):
+            kept[key] = replace(case, duration=0.1)
     return replace(whole, cases=kept, frames=2)
 
 

@@ -49,7 +49,8 @@ def _impair(arguments: list[str]) -> int:
     from vehicle_sim.app.impair_arguments import parse_impair
 
     try:
-        return impair(parse_impair(arguments))
+        with output_that_may_end("stdout"):
+            return impair(parse_impair(arguments))
     except UnusableInput as error:
         print(error, file=sys.stderr)
     except SimulationError as error:

@@ -70,7 +70,7 @@ _VALUES = (
     _Value("latency", partial(number, least=0.0, most=60.0), "delay of every datagram (s)"),
     _Value("jitter", partial(number, least=0.0, most=60.0), "longest random delay beside it (s), the order kept"),
     _Value("reordering", partial(number, least=0.0, most=1.0), "probability that later datagrams overtake one"),
-    _Value("rate", partial(number, least=1.0, most=1e9), "limit of the rate (bytes/s)"),
+    _Value("rate", partial(number, least=1.0, most=1e9), "limit of the rate (bytes/s), of sik in its windows"),
     _Value("queue", partial(whole_number, least=1, most=10**9), "bytes that may wait for it; others are lost"),
 )  # fmt: skip
 
