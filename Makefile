@@ -26,7 +26,8 @@ help:
 	@echo "make test-fast    ruff, mypy and the tests that need no flight"
 	@echo "make test-long    the same cases with further seeds and sizes, and longer missions"
 	@echo "make test-lowest  some tests and a flight with the lowest versions that pyproject.toml allows"
-	@echo "make release      build sdist and wheel into dist/; install the wheel elsewhere, fly there, run another project's tests"
+	@echo "make release      build sdist and wheel into dist/; install the wheel elsewhere, fly there, run another project's tests;"
+	@echo "                  test-lowest"
 	@echo "make test-numerics  tests of linear algebra and a flight with other OpenBLAS kernels (KERNELS='$(KERNELS)')"
 	@echo "make golden       compare short flights, to the byte, with those of the commit BASE ($(BASE)) and with checksums"
 	@echo "make golden-renew write the checksums anew"
@@ -71,6 +72,7 @@ test-lowest: $(INSTALLED)
 release: $(INSTALLED)
 	$(VENV)/bin/python -m pytest -n 0 tests/project/test_packaging.py
 	tests/packaging/wheel $(VENV)/bin/python
+	tests/packaging/wheel $(VENV)/bin/python lowest
 
 # Any that the processor has; those that sum as the pinned ones do, such as Zen, prove nothing.
 test-numerics: $(COMPILED)
@@ -121,6 +123,7 @@ docs: $(INSTALLED)
 	$(VENV)/bin/python tests/pages/failsafes_page.py > docs/failsafes.md
 	$(VENV)/bin/python tests/pages/autopilots_page.py > docs/autopilots.md
 	$(VENV)/bin/python tests/pages/kinds_page.py docs/faults.md
+	$(VENV)/bin/python tests/pages/links_page.py docs/links.md
 	$(VENV)/bin/python -m vehicle_sim.mavlink.services_page > docs/services.md
 	$(VENV)/bin/python tests/packaging/notice.py > NOTICE
 

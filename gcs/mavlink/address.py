@@ -39,12 +39,12 @@ class ConnectionUrl:
         return f"{'udpin' if self.listens else 'udp'}://{self.host}:{self.port}"
 
 
-def parse_url(text: str) -> ConnectionUrl:
-    """Raises :class:`UnusableInput` when ``text`` is no connection URL."""
+def parse_url(text: str, option: str = "--connect") -> ConnectionUrl:
+    """Raises :class:`UnusableInput` that names ``option`` when ``text`` is no connection URL."""
     match = _URL.match(text)
     if match is None or not 1 <= int(match["port"]) <= 65535:
-        raise UnusableInput(f"--connect {text}: expected udp://HOST:PORT, udpout://HOST:PORT or udpin://HOST:PORT")
-    host = resolved(match["host"], f"--connect {text}")
+        raise UnusableInput(f"{option} {text}: expected udp://HOST:PORT, udpout://HOST:PORT or udpin://HOST:PORT")
+    host = resolved(match["host"], f"{option} {text}")
     return ConnectionUrl(host, int(match["port"]), match["scheme"] == "udpin")
 
 

@@ -4,6 +4,7 @@ import gc
 import json
 import os
 import re
+import runpy
 import shutil
 import signal
 import subprocess
@@ -235,19 +236,25 @@ def test_flight_has_its_records_and_leaves_no_file(tmp_path, monkeypatch):
 
 @pytest.fixture(scope="module")
 def commanded(tmp_path_factory):
-    """Two missions, each with a flight by the command: (mission's file, run folder, figures)."""
+    """A mission with a flight by the command: (mission's file, run folder, figures)."""
     folder = tmp_path_factory.mktemp("commanded")
-    (folder / "low_hop.toml").write_text(LOW_HOP)
-    flights = []
-    for path in (HOP, folder / "low_hop.toml"):
-        _, figures = gcs_fly(path, folder / path.stem, "--seed", 5, "--no-pictures")
-        flights.append((path, folder / path.stem, figures))
-    return flights
+    path = folder / "low_hop.toml"
+    path.write_text(LOW_HOP)
+    _, figures = gcs_fly(path, folder / path.stem, "--seed", 5, "--no-pictures")
+    return path, folder / path.stem, figures
+
+
+@pytest.fixture(scope="module")
+def alone(commanded, tmp_path_factory):
+    """Two missions, each with a flight by itself: (mission's file, run folder)."""
+    folder = tmp_path_factory.mktemp("alone") / HOP.stem
+    gcs.fly(HOP, seed=5, run_dir=folder)
+    return [(HOP, folder), commanded[:2]]
 
 
 @pytest.mark.slow
 def test_flight_has_the_bytes_of_the_command(tmp_path, commanded):
-    path, folder, figures = commanded[1]
+    path, folder, figures = commanded
     flight = gcs.fly(path, seed=5, run_dir=tmp_path / "call")
     assert {entry.name for entry in flight.run_dir.iterdir()} == {entry.name for entry in folder.iterdir()}
     assert same_bytes(flight.run_dir, folder, (*SAME, "obstacles.csv"))
@@ -287,8 +294,8 @@ def in_folder(mission, folder):
 
 
 @pytest.mark.slow
-def test_flights_that_take_turns_have_the_bytes_of_the_commands_flights(tmp_path, commanded):
-    missions = [replace(read_mission(path), seed=5) for path, *_ in commanded]
+def test_flights_that_take_turns_have_the_bytes_of_flights_alone(tmp_path, alone):
+    missions = [replace(read_mission(path), seed=5) for path, _ in alone]
     with in_folder(missions[1], tmp_path / "turns1") as second, in_folder(missions[0], tmp_path / "turns0") as first:
         flights = [first, second]
         while going := [flight for flight in flights if not flight.ended]:
@@ -296,7 +303,7 @@ def test_flights_that_take_turns_have_the_bytes_of_the_commands_flights(tmp_path
                 flight.step()
         for flight in flights:
             assert flight.result().summary["outcome"] == "completed"
-    for number, (_, folder, _) in enumerate(commanded):
+    for number, (_, folder) in enumerate(alone):
         assert same_bytes(folder, tmp_path / f"turns{number}")
 
 
@@ -306,10 +313,10 @@ def resident_mb():
 
 @pytest.mark.slow
 @pytest.mark.long
-def test_fifty_flights_in_any_order_have_the_bytes_of_flights_alone_and_take_no_memory(tmp_path, commanded):
+def test_fifty_flights_in_any_order_have_the_bytes_of_flights_alone_and_take_no_memory(tmp_path, alone):
     memory = []
-    for number in np.random.default_rng(38).integers(len(commanded), size=50).tolist():
-        path, folder, _ = commanded[number]
+    for number in np.random.default_rng(38).integers(len(alone), size=50).tolist():
+        path, folder = alone[number]
         assert gcs.fly(path, seed=5, run_dir=tmp_path / "flown").completed
         assert same_bytes(tmp_path / "flown", folder)
         shutil.rmtree(tmp_path / "flown")
@@ -357,12 +364,11 @@ def test_second_interrupt_ends_the_flight_at_once(tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-def test_example_flies():
-    example = ROOT / "docs" / "examples" / "fly_from_python.py"
-    done = subprocess.run(
-        [sys.executable, example], env=ENVIRONMENT, cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    assert [line.split()[:2] for line in done.stdout.splitlines()] == [
+def test_example_flies(monkeypatch, capsys):
+    monkeypatch.chdir(ROOT)
+    runpy.run_path("docs/examples/fly_from_python.py", run_name="__main__")
+    printed = capsys.readouterr()
+    assert [line.split()[:2] for line in printed.out.splitlines()] == [
         ["0.9:", "completed,"], ["1.0:", "completed,"], ["1.1:", "completed,"],
     ]  # fmt: skip
-    assert done.stderr == ""
+    assert printed.err == ""

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import distributed
 import pytest
+from calls import go_on, kill_this_process, process_of
 from file_events import wait_for_ends, wait_for_file
 from flights import HOP
 from programs import ENVIRONMENT
@@ -113,20 +114,6 @@ def test_flight_whose_process_is_killed_twice_is_reported(tmp_path, monkeypatch)
 # Processes of this machine
 
 
-def process_of(_=None):
-    return os.getpid()
-
-
-def kill_this_process(_=None):
-    os.kill(os.getpid(), signal.SIGKILL)
-
-
-def go_on(folder):
-    """Go on until the process ends."""
-    (folder / str(os.getpid())).touch()
-    threading.Event().wait()
-
-
 def test_process_serves_many_calls_and_a_killed_one_fails_its_own_only():
     with WorkerProcesses(1) as executor:
         killed = executor.submit(kill_this_process)
@@ -149,8 +136,8 @@ def test_calls_under_way_end_with_the_executor(tmp_path):
 
 def test_processes_end_with_the_one_that_started_them(tmp_path):
     program = (
-        "import pathlib, sys; sys.path[:0] = 'tests/support', 'tests/campaign'\n"
-        "from gcs.campaign.executors import WorkerProcesses\nfrom test_executors import go_on\n"
+        "import pathlib, sys; sys.path.insert(0, 'tests/support')\n"
+        "from calls import go_on\nfrom gcs.campaign.executors import WorkerProcesses\n"
         "if __name__ == '__main__': WorkerProcesses(1).submit(go_on, pathlib.Path(sys.argv[1])).result()"
     )
     command = [sys.executable, "-c", program, tmp_path]

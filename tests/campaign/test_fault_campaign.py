@@ -159,16 +159,16 @@ severity = {{ probability = {severities} }}
 
 
 @pytest.mark.parametrize(
-    ("severities", "kills"),
-    [([0.1], [1]), pytest.param([0.05, 0.1], [1, 2], marks=pytest.mark.long)],
+    ("severities", "jobs", "kills"),
+    [([0.1], "1", [1]), pytest.param([0.05, 0.1], "2", [1, 2], marks=pytest.mark.long)],
     ids=["once", "twice"],
 )
-def test_campaign_killed_completes_without_flying_twice(severities, kills, tmp_path):
-    """Real flights, two at a time; the campaign is killed when one has ended, and again after two more."""
+def test_campaign_killed_completes_without_flying_twice(severities, jobs, kills, tmp_path):
+    """Real flights; the campaign is killed when one has ended; two at a time, and again after two more."""
     path, out = campaign_file(tmp_path, REAL.format(severities=severities)), tmp_path / "out"
     count = 3 * len(severities)
     (tmp_path / "hop.toml").write_text(HOP)
-    command = [sys.executable, "-m", "gcs", "faults", str(path), "--out", str(out), "--jobs", "2", "--keep", "all"]
+    command = [sys.executable, "-m", "gcs", "faults", str(path), "--out", str(out), "--jobs", jobs, "--keep", "all"]
     reported, kept = [], {}
     for ended in kills:
         with subprocess.Popen(

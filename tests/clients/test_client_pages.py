@@ -46,6 +46,7 @@ def test_program_of_page_flies_as_the_page_says(page, tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.long  # the same commands: tests/clients/test_mavproxy.py
 def test_commands_of_the_page_of_mavproxy_fly_as_it_says(tmp_path):
     (_, simulator), (_, command), (_, typed) = [block for block in blocks("mavproxy.md") if block[0]]
     printed = {"param show": r"MPC_XY_CRUISE +5", "arm": "ARMED", "takeoff": "Mode LOITER", "long": "DISARMED"}

@@ -77,6 +77,7 @@ def test_mavproxy_reads_and_sets_parameters(free_swarm, tmp_path):
         program.command("param set NO_SUCH 1", "Unable to find parameter 'NO_SUCH'")
 
 
+@pytest.mark.long  # the refusals themselves: tests/services
 def test_mavproxy_is_refused_what_one_vehicle_on_a_payload_cannot_do(team, tmp_path):
     with mavproxy(team.sdk_port(2), tmp_path) as program:
         for command, name in (

@@ -9,6 +9,7 @@ from flights import HOP, system_file
 from programs import ENVIRONMENT, PATIENCE, gcs_fly, swarm_process
 from websockets.sync.client import connect
 
+import gcs
 from gcs.record.tables import ALARMS, ESTIMATE, FORCES, HORIZON, INNOVATIONS, MODES, PHASES, REFERENCE, TRUTH
 
 pytestmark = pytest.mark.slow
@@ -31,9 +32,9 @@ def records_of(folder):
 
 @pytest.fixture(scope="module")
 def plain(mission):
-    """The records of the flight without a view."""
+    """The records of the flight without a view, which has the same bytes by the command."""
     folder = mission.parent / "plain"
-    assert gcs_fly(mission, folder, "--no-pictures")[0] == 0
+    assert gcs.fly(mission, run_dir=folder).completed
     return records_of(folder)
 
 
@@ -45,6 +46,7 @@ def address_of(stream):
     raise AssertionError("no address of the view")
 
 
+@pytest.mark.long
 def test_records_are_the_same_to_the_byte_when_nobody_looks(mission, plain):
     folder = mission.parent / "unseen"
     assert gcs_fly(mission, folder, *VIEW)[0] == 0

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from small_campaign import InThisThread
 
 from gcs.app.cli import main
 from gcs.app.commands import reproduce as command
@@ -96,14 +97,15 @@ def short_plan(quick):
     kept = {}
     for key, case in whole.cases.items():
         if key[0] in ("tracking", "avoidance"):
-            kept[key] = replace(case, duration=0.4)
-        elif key[1] in ("printed_2.7", "printed_3", "printed_0.25", "printed_0.008_1"):
             kept[key] = replace(case, duration=0.2)
+        elif key[1] in ("printed_2.7", "printed_3", "printed_0.25", "printed_0.008_1"):
+            kept[key] = replace(case, duration=0.1)
     return replace(whole, cases=kept, frames=2)
 
 
 def test_command_fills_a_folder(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(command, "plan", short_plan)
+    monkeypatch.setattr("gcs.reproduce.work.WorkerProcesses", InThisThread)
     out = tmp_path / "deep" / "out"
     assert main(["reproduce", "--quick", "--out", str(out), "--jobs", "1"]) == 0
     said = capsys.readouterr().out

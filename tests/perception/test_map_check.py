@@ -194,7 +194,7 @@ def fly(known, true, until, seed, off=lambda t, uav: np.zeros(3)):
         (1, 10, ("sphere", "pole"), 1.0),
         pytest.param(2, 50, ("sphere", "pole"), 1.0, marks=pytest.mark.long),
         (5, 50, ("wall", "box", "sphere", "pole"), 1.0),
-        (3, 100, ("sphere", "pole"), 1.0),
+        pytest.param(3, 100, ("sphere", "pole"), 1.0, marks=LONG),
         pytest.param(7, 50, ("sphere", "pole"), 0.5, marks=pytest.mark.slow),
         pytest.param(4, 200, ("sphere", "pole"), 1.0, marks=LONG),
         pytest.param(8, 100, ("wall", "box", "sphere", "pole"), 0.5, marks=LONG),

@@ -65,6 +65,7 @@ def differences(expected, printed):
 
 
 @pytest.mark.slow
+@pytest.mark.long  # what its commands do is tested one by one
 def test_tutorial_works_as_written(tmp_path):
     page = PAGE.read_text(encoding="utf-8")
     clone = tmp_path / "clone"

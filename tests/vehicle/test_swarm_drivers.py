@@ -72,31 +72,29 @@ def test_parallel_swarms_of_equal_seed_fly_alike_and_land_after_link_loss(tmp_pa
         arguments = ("--lockstep", "--base-port", 0, "--with-parent", "--run-dir", tmp_path / name, "--seed", seed)
         return process(*arguments)
 
-    with started("a", 5) as first, started("b", 5) as second, started("c", 6) as third:
-        ports = {port for _, clock, vehicles in (first, second, third) for _, port in (clock, *vehicles)}
-        assert len(ports) == 15
-        # The first says that it leaves, the others just vanish.
-        ends = (LockstepClient.leave, LockstepClient.close, LockstepClient.close)
+    with started("a", 5) as first, started("b", 5) as second:
+        ports = {port for _, clock, vehicles in (first, second) for _, port in (clock, *vehicles)}
+        assert len(ports) == 10
+        # The first says that it leaves, the other one just vanishes.
+        ends = (LockstepClient.leave, LockstepClient.close)
         flights = [
             threading.Thread(target=fly_and_leave, args=(clock, vehicles, end))
-            for (_, clock, vehicles), end in zip((first, second, third), ends, strict=True)
+            for (_, clock, vehicles), end in zip((first, second), ends, strict=True)
         ]
         for flight in flights:
             flight.start()
         for flight in flights:
             flight.join(PATIENCE)
             assert not flight.is_alive()
-        for running, _, _ in (second, third):
-            running.stdin.close()
-        for running, _, _ in (first, second, third):
+        second[0].stdin.close()
+        for running, _, _ in (first, second):
             assert running.wait(PATIENCE) == 0
             assert running.stdout.read() == ""
-    for name in "abc":
+    for name in "ab":
         check_landed(read_table(tmp_path / name / "truth.csv"))
         assert {path.name for path in (tmp_path / name).iterdir()} == {"truth.csv", "modes.csv", "forces.csv"}
-    truths = [(tmp_path / name / "truth.csv").read_bytes() for name in "abc"]
-    assert truths[0] == truths[1]
-    assert truths[0] != truths[2]
+    first_truth, second_truth = ((tmp_path / name / "truth.csv").read_bytes() for name in "ab")
+    assert first_truth == second_truth  # of another seed they differ: tests/vehicle/test_swarm.py
 
 
 def test_lockstep_time_starts_when_a_ground_joins(lockstep):

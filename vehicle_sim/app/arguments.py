@@ -25,7 +25,10 @@ Whoever sends MAVLink to 14580 and on is answered there, and gets the streams un
 payload's navigation unit is a system of its own, with id 100: every vehicle forwards its messages to whoever calls in
 and to its SDK, vehicle 1 to the ground stations. Vehicles whose set-points stop brake and hold, then land.
 
-With --free there is no payload: each vehicle takes off, flies missions, returns and lands by itself, as a PX4 does."""
+With --free there is no payload: each vehicle takes off, flies missions, returns and lands by itself, as a PX4 does.
+
+"vehicle-sim impair" is a program of its own: the loss, latency and rate of a radio, LTE, Wi-Fi or a satellite between
+any two MAVLink programs (vehicle-sim impair --help)."""
 
 _EPILOG = """\
 On standard output, line by line: the clock's address (lockstep only), every vehicle's, and "ready".
@@ -38,6 +41,8 @@ Examples:
                                                  the mission's home, obstacles, seed and system; truth.csv
   gcs fly missions/figure_eight.toml --realtime --connect
                                                  in another terminal: fly it
+  vehicle-sim impair --profile lte udpin://127.0.0.1:14550 udpout://127.0.0.1:14560
+                                                 what comes at port 14550 goes on to 14560 as over LTE, and back
 
 Exit status: 0 ended by SIGTERM or with the process that started it, 2 unusable input, with the reason on standard
 error and nothing started, 3 the records are incomplete, 130 interrupted, or its terminal closed.

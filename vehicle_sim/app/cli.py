@@ -23,6 +23,8 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _main(arguments: list[str]) -> int:
+    if arguments[:1] == ["impair"]:
+        return _impair(arguments[1:])
     choose_kernels()
     try:
         options = parse(arguments)
@@ -39,3 +41,20 @@ def _main(arguments: list[str]) -> int:
         return UNUSABLE_INPUT
     except KeyboardInterrupt:  # while starting; later it is a request to end
         return INTERRUPTED
+
+
+def _impair(arguments: list[str]) -> int:
+    """Run ``vehicle-sim impair``, which needs neither the world nor its kernels."""
+    from vehicle_sim.app.impair import impair
+    from vehicle_sim.app.impair_arguments import parse_impair
+
+    try:
+        with output_that_may_end("stdout"):
+            return impair(parse_impair(arguments))
+    except UnusableInput as error:
+        print(error, file=sys.stderr)
+    except SimulationError as error:
+        print(f"vehicle-sim impair: {error}", file=sys.stderr)
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    return UNUSABLE_INPUT

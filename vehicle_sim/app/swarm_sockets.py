@@ -34,8 +34,8 @@ class SwarmSockets(contextlib.ExitStack):
             )
         super().__init__()
         with contextlib.ExitStack() as opened:
-            self.clock = opened.enter_context(_bound(host, base_port and base_port - 1)) if with_clock else None
-            self.vehicles = [opened.enter_context(_bound(host, base_port and base_port + i)) for i in range(vehicles)]
+            self.clock = opened.enter_context(bound(host, base_port and base_port - 1)) if with_clock else None
+            self.vehicles = [opened.enter_context(bound(host, base_port and base_port + i)) for i in range(vehicles)]
             self.push(opened.pop_all())
         self._poll = select.poll()
         self._endpoint_at = {endpoint.fileno(): (i, endpoint) for i, endpoint in enumerate(self.vehicles, start=1)}
@@ -78,7 +78,8 @@ def url(endpoint: socket.socket) -> str:
     return f"udp://{host}:{port}"
 
 
-def _bound(host: str, port: int) -> socket.socket:
+def bound(host: str, port: int) -> socket.socket:
+    """Return a non-blocking UDP socket that listens there. Raises :class:`SimulationError`."""
     endpoint = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         endpoint.setblocking(False)

@@ -1,13 +1,17 @@
 """A fault of a flight: its parameters, its schedule, its random numbers, and what it has done."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
 from gcs.faults import KINDS, Direction, Kind, read_settings
-from gcs.mission.model import Fault
+
+if TYPE_CHECKING:
+    from gcs.mission.model import Fault  # takes long to import, with the kernels of the geometry
 
 TOLERANCE = 1e-6  # s: sums of steps are not exact, and drivers round to microseconds
 
@@ -83,19 +87,25 @@ _STREAM = 2_000_003  # separates these generators from the sensors'
 WORLD = 0  # in place of a vehicle, of faults that disturb none
 
 
-@dataclass
-class ActiveFault:
-    """``number`` counts the faults of the mission from 1; ``seen`` and ``disturbed`` are datagrams or samples."""
+@dataclass(kw_only=True)
+class Activity:
+    """Parameters of a kind of fault, when they act, and on how many datagrams or samples they have."""
+
+    settings: Any
+    schedule: Schedule
+    seen: int = 0
+    disturbed: int = 0
+
+
+@dataclass(kw_only=True)
+class ActiveFault(Activity):
+    """A fault of a mission, which counts its faults from 1."""
 
     number: int
     fault: Fault
     kind: Kind
-    settings: Any
-    schedule: Schedule
     seed: int
     vehicles: tuple[int, ...]
-    seen: int = 0
-    disturbed: int = 0
 
     @classmethod
     def of(cls, number: int, fault: Fault, seed: int, team: int) -> Self:
@@ -104,7 +114,10 @@ class ActiveFault:
         vehicles = tuple(range(1, team + 1)) if fault.vehicles is None else fault.vehicles
         start = (fault.start_offset if fault.start is None else fault.start) or 0.0
         schedule = Schedule(start, fault.duration, fault.every, fault.times)
-        return cls(number, fault, KINDS[fault.kind], settings, schedule, seed, vehicles)
+        return cls(
+            number=number, fault=fault, kind=KINDS[fault.kind], settings=settings, schedule=schedule, seed=seed,
+            vehicles=vehicles,
+        )  # fmt: skip
 
     @property
     def direction(self) -> Direction | None:

@@ -1,5 +1,7 @@
 """One fault on one vehicle: on a direction of its link, where datagrams are delayed or lost, or on its samples."""
 
+from __future__ import annotations
+
 import heapq
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,7 +14,7 @@ from gcs.config import SystemConfig
 from gcs.faults import Direction
 from gcs.mavlink.address import Address
 from gcs.mavlink.frames import V2, spans
-from vehicle_sim.faults.active import TOLERANCE, ActiveFault, Moment
+from vehicle_sim.faults.active import TOLERANCE, ActiveFault, Activity, Moment
 
 _TUNNEL = mavlink.MAVLINK_MSG_ID_TUNNEL
 _STAMP = 4
@@ -56,7 +58,7 @@ def frames(datagram: bytes) -> Iterator[Frame]:
 class Impairment:
     """What one kind of fault does."""
 
-    of_kind: ClassVar[dict[type, type["Impairment"]]] = {}
+    of_kind: ClassVar[dict[type, type[Impairment]]] = {}
     """The impairment of each kind of fault, by the kind's parameters or their base class."""
 
     def __init_subclass__(cls, of: type | None = None) -> None:
@@ -71,7 +73,7 @@ class LinkImpairment(Impairment, ABC):
     direction: ClassVar[Direction | None] = None
     """Direction of a kind that is bound to one; None: the mission's."""
 
-    def __init__(self, fault: ActiveFault, generator: np.random.Generator) -> None:
+    def __init__(self, fault: Activity, generator: np.random.Generator) -> None:
         self.fault = fault
         self.random = generator.random
         self.generator = generator
@@ -94,6 +96,11 @@ class LinkImpairment(Impairment, ABC):
         while self._delayed and self._delayed[0][0] <= now + TOLERANCE:
             out.append(heapq.heappop(self._delayed)[2])
         return out
+
+    @property
+    def waiting(self) -> int:
+        """Return the number of delayed datagrams."""
+        return len(self._delayed)
 
     def next_timer(self) -> float | None:
         """Return when the next delayed datagram is due (s)."""
