@@ -27,6 +27,7 @@ def fault(
     direction: Any = None,
     start_phase: Any = None,
     start_offset: float | None = None,
+    start_flight: int | None = None,
 ) -> Fault:
     """A fault with ``parameters`` of a kind, such as ``gcs.faults.link.PacketLoss(probability=0.3)``.
 
@@ -42,7 +43,7 @@ def fault(
     start = 0.0 if start is None and start_phase is None else start
     return Fault(
         names[0], start, duration, every, times, named, direction, settings, start_phase=start_phase,
-        start_offset=start_offset,
+        start_offset=start_offset, start_flight=start_flight,
     )  # fmt: skip
 
 
