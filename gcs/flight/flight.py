@@ -20,6 +20,7 @@ from gcs.flight.spool import Touchdown
 from gcs.flight.team import Team
 from gcs.mission.model import Mission
 from idc_controller.arrays import Array
+from idc_controller.estimation.grounded_links import LinkStates
 from idc_controller.estimation.measurements import Estimate, Measurement
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.trajectory.flatness import Reference
@@ -104,11 +105,25 @@ class Flight:
         if self.phase in CONTROLLED:
             for taken in measurements:
                 self.system.plan.add(taken)
-            return [used for taken in measurements if (used := self.control.estimator.add(taken)) is not None]
+            used = [used for taken in measurements if (used := self.control.estimator.add(taken)) is not None]
+            if self.phase not in IN_AIR:
+                for taken in used:
+                    self.control.add_to_links(taken)
+                if self._in_cradles:
+                    for taken in measurements:
+                        self.system.preflight.add(taken)
+            return used
         if self.phase in (Phase.CHECK, Phase.ARM):
             for taken in measurements:
                 self.system.preflight.add(taken)
         return measurements
+
+    @property
+    def _in_cradles(self) -> bool:
+        """True while the rotors spool up, until they lift a vehicle's own weight."""
+        p, spooled = self.system.team.parameters, self.time - self.takeoff_time
+        share = spooled / self._settings.takeoff_landing.spool_up_time
+        return self.phase is Phase.SPOOL_UP and bool(np.all(share * p.hover_thrust < p.m * p.g))
 
     # Failsafes
 
@@ -223,8 +238,10 @@ class Flight:
     def _begin_spool_up(self, time: float) -> None:
         assert self._pad is not None
         rest = Reference(self.control.controller.parameters, self._pad, self.control.controller.load.estimate)
-        self.control.estimator.start(time, rest.at(np.array([time])).x[0])
+        start = rest.at(np.array([time])).x[0]
+        self.control.estimator.start(time, start)
         self.control.estimator.setpoints.add(time, None)
+        self.control.start_links(time, start[:12])
         self.takeoff_time = time
         self.phase = Phase.SPOOL_UP
 
@@ -242,18 +259,22 @@ class Flight:
         in_air = self.phase in IN_AIR
         if in_air and self._evaluate(Check.ESTIMATE, time, now, estimate):
             return None, None
+        links = None if in_air else self.control.links.at(estimate.time)
         self.last_record = record = self.control.decide(
-            estimate, trajectory, on_ground=not in_air, learn_load=self.system.payload.is_clear(estimate)
+            estimate, trajectory, links=links, learn_load=self.system.payload.is_clear(estimate)
         )
-        share = self._thrust_share(time, estimate)
+        thrusts = self._thrusts(time, record.decision.thrusts, links)
+        if links is not None:
+            tilts = record.decision.u[self.control.controller.layout.n_setpoint].reshape(-1, 2)
+            self.control.links.command(effective, tilts, thrusts)
         if in_air:
             self.control.send(record, effective, leaves, self.system.team.hold)
             places = self.control.estimator.measurement_model.vehicles(time, record.decision.flat.x[0])
             contradicted = self.control.estimator.health.uav_positions_isolated
             planned_down = float(record.decision.flat.payload[0, 0, 2])
             self.system.plan.compare(estimate.time, places.values[:, :3], contradicted, planned_down)
-        self._advance(time, estimate, share)
-        return Setpoints(record.decision.directions, record.decision.thrusts * share), record
+        self._advance(time, estimate, thrusts)
+        return Setpoints(record.decision.directions, thrusts), record
 
     def _followed(self) -> Trajectory:
         if self._touchdown is not None:
@@ -263,31 +284,29 @@ class Flight:
         assert self._pad is not None
         return self._pad
 
-    def _thrust_share(self, time: float, estimate: Estimate) -> float:
-        """Return the share of the thrust that carries payload and vehicles."""
+    def _thrusts(self, time: float, hover: Array, links: LinkStates | None) -> Array:
+        """Return the thrusts (N,) (N) of UAVs that need ``hover`` (N,) with the payload in the air."""
         if self.phase is Phase.SPOOL_UP:
-            return min((time - self.takeoff_time) / self._settings.takeoff_landing.spool_up_time, 1.0)
-        if self._touchdown is None:
-            return 1.0
-        layout, ahead = self.control.controller.layout, self._settings.takeoff_landing.lean_time
-        lean = float(max(np.abs(estimate.x[layout.s]).max(), ahead * np.abs(estimate.x[layout.s_dot]).max()))
-        return self._touchdown.share(time, lean)
+            return hover * min((time - self.takeoff_time) / self._settings.takeoff_landing.spool_up_time, 1.0)
+        if self._touchdown is None or links is None:
+            return hover
+        return self._touchdown.thrusts(time, hover, links)
 
     def _progress(self, time: float) -> tuple[float, Trajectory]:
         """Return the progress along the mission trajectory (s), and that."""
         assert self.mission_trajectory is not None
         return self.system.guidance.progress(time), self.mission_trajectory.trajectory
 
-    def _advance(self, time: float, estimate: Estimate, share: float) -> None:
+    def _advance(self, time: float, estimate: Estimate, thrusts: Array) -> None:
         """Go on to the next phase where this one is over."""
         if self.phase is Phase.SPOOL_UP:
-            if share >= 1.0:
+            if time - self.takeoff_time >= self._settings.takeoff_landing.spool_up_time:
                 assert self._pad is not None
                 position = self._pad.position(time)
                 self.mission_trajectory = MissionTrajectory(self.mission, position, time)
                 self.phase = Phase.CLIMB
         elif self.phase is Phase.SPOOL_DOWN:
-            if share <= 0.0:
+            if not thrusts.any():
                 self._disarm(time)
         elif self.mission_trajectory is not None:
             progress, trajectory = self._progress(time)
@@ -301,7 +320,9 @@ class Flight:
             RestTrajectory(estimate.x[layout.r_0], time),
             float(estimate.x[layout.Theta][2]),
             time,
+            self.system.team.parameters.m * self.system.team.parameters.g,
             self._settings.takeoff_landing,
         )
         self.control.estimator.setpoints.add(estimate.time, None)
+        self.control.start_links(estimate.time, estimate.x[:12], estimate)
         self.phase = Phase.SPOOL_DOWN
