@@ -89,6 +89,7 @@ class TakeoffLandingSettings(SettingsTable):
     position_samples: int = 100  # of each source, averaged on the ground
     offboard_delay: float = 0.5  # s; of set-points before OFFBOARD is commanded
     spool_up_time: float = 2.5  # s; from idle to hover thrust
+    lifted: float = 0.05  # m; by which a payload has risen that lifts off with less thrust than hover
     spool_down_time: float = 2.0  # s; from hover thrust to idle
     unload_time: float = 0.3  # s; in which the ground takes over the weight of a payload that has touched down
     # of the payload's weight, that UAVs carry until their links are upright: with more of it a payload slides in wind

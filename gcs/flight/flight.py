@@ -292,6 +292,18 @@ class Flight:
             return hover
         return self._touchdown.thrusts(time, hover, links)
 
+    def _lifted_mass(self, thrusts: Array, risen: float) -> float:
+        """Return the mass (kg) of a payload that has ``risen`` (m) although ``thrusts`` (N,) still grow.
+
+        From the lift-off, t ago, the thrust has grown by its rate times t, and lifted by rate / mass t^3 / 6.
+        """
+        p, lift = self.system.team.parameters, float(thrusts.sum())
+        rate = float(p.hover_thrust.sum()) / self._settings.takeoff_landing.spool_up_time
+        total = lift / p.g
+        for _ in range(5):
+            total = (lift - rate * (6.0 * risen * total / rate) ** (1.0 / 3.0)) / p.g
+        return total - float(p.m.sum())
+
     def _progress(self, time: float) -> tuple[float, Trajectory]:
         """Return the progress along the mission trajectory (s), and that."""
         assert self.mission_trajectory is not None
@@ -300,9 +312,12 @@ class Flight:
     def _advance(self, time: float, estimate: Estimate, thrusts: Array) -> None:
         """Go on to the next phase where this one is over."""
         if self.phase is Phase.SPOOL_UP:
-            if time - self.takeoff_time >= self._settings.takeoff_landing.spool_up_time:
-                assert self._pad is not None
-                position = self._pad.position(time)
+            assert self._pad is not None
+            position, settings = self._pad.position(time), self._settings.takeoff_landing
+            risen = float(position[2] - estimate.x[self.control.controller.layout.r_0][2])
+            if risen > settings.lifted:
+                self.control.controller.load.weigh(self._lifted_mass(thrusts, risen))
+            if risen > settings.lifted or time - self.takeoff_time >= settings.spool_up_time:
                 self.mission_trajectory = MissionTrajectory(self.mission, position, time)
                 self.phase = Phase.CLIMB
         elif self.phase is Phase.SPOOL_DOWN:

@@ -35,6 +35,12 @@ class LoadAdaptation:
         force[:2] *= 1.0 - share
         self.estimate = Load(load.mass, force, load.uav_force + uav_drag)
 
+    def weigh(self, mass: float) -> None:
+        """Take a payload of ``mass`` (kg): by the thrust with which it lifts off."""
+        least, most = self.settings.mass_share
+        mass = min(max(mass, least * self.parameters.m_0), most * self.parameters.m_0)
+        self.estimate = Load(mass, self.estimate.force, self.estimate.uav_force, self.estimate.air)
+
     def learn(self, estimate: Estimate) -> None:
         """Follow the disturbance forces and the mass excess of ``estimate``."""
         load = self.estimate
