@@ -242,7 +242,8 @@ def ground_station(
         safety = PrintedFilter(model, obstacle_map, config.avoidance.margin)
     control = ControlLoop(
         stack.estimator(config, model), stack.controller(config, model, safety, stopwatch, guidance),
-        ComputeTimes(stopwatch), brake=stack.resting_place(config, model, obstacle_map, mission.area),
+        ComputeTimes(stopwatch), stack.grounded_links(config, model),
+        stack.resting_place(config, model, obstacle_map, mission.area),
     )  # fmt: skip
     alarms = AlarmLog(recorder.alarm, config.flight.monitor)
     flight = Flight(mission, Team(links, model.parameters), control, alarms, obstacle_map)

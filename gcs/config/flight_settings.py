@@ -41,7 +41,9 @@ class FailsafeSettings(SettingsTable):
         0.38, "", "share of the payload's weight; level drag on it at rest above which the flight is ended", gt=0.0
     )
     # rad; of a vehicle on board, by the force that it pulls aside with: less is compensated
-    attitude_error: float = 0.09
+    attitude_error: float = 0.07
+    attitude_certainty: Share = 0.999  # probability, by the filter's covariance, that it is wrong by more than that
+    pad_attitude_error: float = 0.05  # rad; between axes of vehicle and payload on the pad: how level cradles are
     tilt_time: float = 0.5  # s; for which the tilt must exceed its limit
     descent_timeout: float = 15.0  # s; after the descent's planned end, with the payload still high
     arm_timeout: float = 12.0  # s; until all vehicles are in OFFBOARD and armed
@@ -91,8 +93,9 @@ class TakeoffLandingSettings(SettingsTable):
     offboard_delay: float = 0.5  # s; of set-points before OFFBOARD is commanded
     spool_up_time: float = 2.5  # s; from idle to hover thrust
     spool_down_time: float = 2.0  # s; from hover thrust to idle
-    standing_share: Share = 0.8  # of the hover thrust, with the payload on the ground and the links taut
-    leaning_share: Share = 0.6  # the same while links lean: with more of it a payload slides in wind
+    unload_time: float = 0.3  # s; in which the ground takes over the weight of a payload that has touched down
+    # of the payload's weight, that UAVs carry until their links are upright: with more of it a payload slides in wind
+    carried_share: Share = 0.24
     upright_lean: float = 0.05  # sine of a link's tilt that stays upright without thrust
     lean_time: float = 1.0  # s; a link that moves on at its rate must be upright for so long, too
     upright_timeout: float = 5.0  # s; for links to come upright before the thrust fades

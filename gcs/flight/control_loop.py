@@ -12,7 +12,8 @@ from gcs.flight.compute_times import ComputeTimes, Part
 from idc_controller.arrays import Array
 from idc_controller.control.controller import Decision, IntegratedDecisionController
 from idc_controller.estimation.estimator import Estimator
-from idc_controller.estimation.measurements import Estimate
+from idc_controller.estimation.grounded_links import N_ACC, N_DOT, OFF, S_DOT, GroundedLinks, LinkStates, N, S
+from idc_controller.estimation.measurements import Channel, Estimate, Measurement, Position
 from idc_controller.trajectory.stop_plan import Braking, StopPlan, stop_plan
 from idc_controller.trajectory.trajectory import Trajectory
 
@@ -57,10 +58,12 @@ class ControlLoop:
         estimator: Estimator,
         controller: IntegratedDecisionController,
         compute_times: ComputeTimes,
+        links: GroundedLinks,
         brake: Callable[[float, Array], Braking] = lambda time, state: Braking(),
     ) -> None:
         """``brake``: the stop of a vehicle without set-points, see :mod:`idc_controller.trajectory.stop_plan`."""
         self.estimator, self.controller = estimator, controller
+        self.links = links
         self.compute_times, self._brake = compute_times, brake
         self.stop_plans: deque[StopPlan] = deque()
         """Of the control steps since the last set-points that all vehicles have received; the first one goes out."""
@@ -70,6 +73,29 @@ class ControlLoop:
         """Stop of all vehicles when set-points are lost; it goes out with the set-points. None: not flying yet."""
         return self.stop_plans[0] if self.stop_plans else None
 
+    def start_links(self, time: float, payload: Array, estimate: Estimate | None = None) -> None:
+        """Begin to estimate links over a ``payload`` (12,) on the ground: upright ones, or those of an ``estimate``.
+
+        What the UAVs have of their own of the disturbance forces in the air is an error of their thrusts' directions.
+        """
+        p, layout = self.controller.parameters, self.controller.layout
+        x, drag, thrusts = np.zeros((6, p.number_of_uavs, 2)), np.zeros(2), np.zeros(p.number_of_uavs)
+        if estimate is not None:
+            parts = (layout.s, layout.s_dot, layout.n, layout.n_dot, layout.n_acc)
+            forces, thrusts = estimate.uav_force[:, :2], p.hover_thrust
+            drag = np.median(forces, axis=0)
+            x[[S, S_DOT, N, N_DOT, N_ACC]] = [estimate.x[part].reshape(-1, 2) for part in parts]
+            x[OFF] = (forces - drag) / thrusts[:, None]
+        self.links.start(time, payload, x, thrusts, drag)
+
+    def add_to_links(self, measurement: Measurement) -> None:
+        """Take a measurement over a payload on the ground, without channels that are isolated."""
+        if isinstance(measurement, Position):
+            isolated = self.estimator.health.isolation.isolated
+            wrong = [Channel(measurement.source, Position, part) in isolated for part in (0, 1)]
+            measurement = measurement.without(*wrong)
+        self.links.add(measurement)
+
     def estimate(self, effective: float, trajectory: Trajectory) -> Estimate:
         """Return the estimate at ``effective`` (s), about ``trajectory``."""
         self.compute_times.lap(Part.MONITORING)
@@ -77,10 +103,12 @@ class ControlLoop:
         self.compute_times.lap(Part.ESTIMATION)
         return estimate
 
-    def decide(self, estimate: Estimate, trajectory: Trajectory, *, on_ground: bool, learn_load: bool) -> StepRecord:
-        """Return the decision on an ``estimate`` of this step."""
+    def decide(
+        self, estimate: Estimate, trajectory: Trajectory, *, links: LinkStates | None = None, learn_load: bool
+    ) -> StepRecord:
+        """Return the decision on an ``estimate`` of this step; ``links``: over a payload on the ground."""
         self.compute_times.lap(Part.MONITORING)
-        decision = self.controller.decide(estimate, trajectory, on_ground=on_ground, learn_load=learn_load)
+        decision = self.controller.decide(estimate, trajectory, links=links, learn_load=learn_load)
         self.compute_times.lap(Part.CONTROL)
         self.compute_times.shift(decision.compute_time.planner, Part.CONTROL, Part.PLANNING)
         return StepRecord(estimate, decision)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from gcs.flight.alarms import AlarmCode, Severity
-from gcs.flight.attitude_error import attitude_wrong
+from gcs.flight.attitude_error import attitude_misaligned, attitude_wrong
 from gcs.flight.autopilot_requirements import missing
 from gcs.flight.condition import Check, Condition, Moment, Reaction, System, Trigger
 from gcs.flight.link_limit import latency_exceeded
@@ -376,6 +376,10 @@ class Failsafe(AlarmCode):
     OBSTRUCTED = (Check.PREFLIGHT, _obstructed, Reaction.REFUSE, "clear the pad",
         "an obstacle of the map, or one that the range sensors see, reaches into the formation on the pad, or where it "
         "has landed")
+    ATTITUDE_MISALIGNED = (Check.STEP, attitude_misaligned, Reaction.BRAKE_AND_LAND,
+        "check its navigation, and how it sits in its cradle",
+        "until it is lifted from its cradle, a vehicle reports an attitude more than {pad_attitude_error} rad off the "
+        "payload's")
     ARMING_FAILED = (Check.COMMAND, _sequence_failed(Phase.ARM), Reaction.DISARM, "act on its STATUSTEXT",
         "a vehicle refuses OFFBOARD or arming, or all are not armed within {arm_timeout:g} s")
     DISARMING_FAILED = (Check.COMMAND, _sequence_failed(Phase.DISARM), Reaction.END_CONTROL,
@@ -424,7 +428,8 @@ class Failsafe(AlarmCode):
     IMPACT = (Check.ESTIMATE, _impact, Reaction.BRAKE_AND_LAND, "inspect the vehicles and what was touched",
         "an accelerometer has exceeded its range since the payload is clear of the ground")
     ATTITUDE_WRONG = (Check.ESTIMATE, attitude_wrong, Reaction.BRAKE_AND_LAND, "check its navigation",
-        "a vehicle pulls aside, as if its attitude were wrong on board by more than {attitude_error} rad")
+        "a vehicle pulls aside, as if its attitude were wrong on board by more than {attitude_error} rad, with a "
+        "probability of {attitude_certainty}")
     WIND_EXCEEDED = (Check.ESTIMATE, _wind_exceeded, Reaction.AUTONOMOUS_LANDING, "wait for less wind",
         "the drag of the wind on the payload at rest is estimated as more than {wind_drag:.0%} of its weight")
     CLIMB_STALLED = (Check.ESTIMATE, _climb_stalled, Reaction.BRAKE_AND_LAND, "check the load, and what holds it",

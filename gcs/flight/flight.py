@@ -25,6 +25,7 @@ from gcs.mission.cargo import CargoState
 from gcs.mission.model import Mission
 from gcs.mission.route import Leg
 from idc_controller.arrays import Array
+from idc_controller.estimation.grounded_links import LinkStates
 from idc_controller.estimation.measurements import Estimate, Measurement
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.trajectory.flatness import Reference
@@ -130,11 +131,26 @@ class Flight:
                 self.system.plan.add(taken)
                 if self._spool_up is not None:
                     self._spool_up.detector.add(taken)
-            return [used for taken in measurements if (used := self.control.estimator.add(taken)) is not None]
+            used = [used for taken in measurements if (used := self.control.estimator.add(taken)) is not None]
+            if self.phase not in IN_AIR:
+                for taken in used:
+                    self.control.add_to_links(taken)
+                if self._in_cradles:
+                    for taken in measurements:
+                        self.system.preflight.add(taken)
+            return used
         if self.phase in (Phase.CHECK, Phase.ARM):
             for taken in measurements:
                 self.system.preflight.add(taken)
         return measurements
+
+    @property
+    def _in_cradles(self) -> bool:
+        """True while the rotors spool up, until they lift a vehicle's own weight."""
+        if self.phase is not Phase.SPOOL_UP or self._spool_up is None:
+            return False
+        p, share = self.system.team.parameters, self._spool_up.share(self.time)
+        return bool(np.all(share * p.hover_thrust < p.m * p.g))
 
     # Failsafes
 
@@ -346,9 +362,10 @@ class Flight:
             self._touchdown = self.mission_trajectory = None
             self.control.controller.start()
         load = self.control.controller.load.estimate
-        rest = Reference(self.control.controller.parameters, self._pad, load)
-        self.control.estimator.start(time, rest.at(np.array([time])).x[0], load)
+        start = Reference(self.control.controller.parameters, self._pad, load).at(np.array([time])).x[0]
+        self.control.estimator.start(time, start, load)
         self.control.estimator.setpoints.add(time, None)
+        self.control.start_links(time, start[:12])
         lift_off = self.mission.system.estimation.lift_off
         self._spool_up = SpoolUp(self.control, time, self._settings.takeoff_landing, lift_off)
         if math.isnan(self.takeoff_time):
@@ -375,11 +392,15 @@ class Flight:
             self._spool_up.continue_in_climb(self.system.plan.below_plan(estimate.x[2]))
         if in_air and self._evaluate(Check.ESTIMATE, time, now, estimate):
             return None, None
+        links = None if in_air else self.control.links.at(estimate.time)
         self.last_record = record = self.control.decide(
-            estimate, trajectory, on_ground=not in_air, learn_load=self.system.payload.is_clear(estimate)
+            estimate, trajectory, links=links, learn_load=self.system.payload.is_clear(estimate)
         )
-        share = self._thrust_share(time, estimate)
-        setpoints = Setpoints(record.decision.directions, record.decision.thrusts * share)
+        thrusts = self._thrusts(time, record.decision.thrusts, links)
+        if links is not None:
+            tilts = record.decision.u[self.control.controller.layout.n_setpoint].reshape(-1, 2)
+            self.control.links.command(effective, tilts, thrusts)
+        setpoints = Setpoints(record.decision.directions, thrusts)
         if self._spool_up is not None:
             self._spool_up.sent(effective, setpoints, leaves, in_air=in_air)
             if self.system.payload.is_clear(estimate):
@@ -390,7 +411,7 @@ class Flight:
             contradicted = self.control.estimator.health.uav_positions_isolated
             planned_down = float(record.decision.flat.payload[0, 0, 2])
             self.system.plan.compare(estimate.time, places.values[:, :3], contradicted, planned_down)
-        self._advance(time, estimate, share)
+        self._advance(time, estimate, thrusts)
         return setpoints, record
 
     def _begin_climb(self, time: float) -> None:
@@ -407,28 +428,26 @@ class Flight:
         assert self._pad is not None
         return self._pad
 
-    def _thrust_share(self, time: float, estimate: Estimate) -> float:
-        """Return the share of the thrust that carries payload and vehicles."""
+    def _thrusts(self, time: float, hover: Array, links: LinkStates | None) -> Array:
+        """Return the thrusts (N,) (N) of UAVs that need ``hover`` (N,) with the payload in the air."""
         if self.phase is Phase.SPOOL_UP and self._spool_up is not None:
-            return self._spool_up.share(time)
-        if self._touchdown is None:
-            return 1.0
-        layout, ahead = self.control.controller.layout, self._settings.takeoff_landing.lean_time
-        lean = float(max(np.abs(estimate.x[layout.s]).max(), ahead * np.abs(estimate.x[layout.s_dot]).max()))
-        return self._touchdown.share(time, lean)
+            return hover * self._spool_up.share(time)
+        if self._touchdown is None or links is None:
+            return hover
+        return self._touchdown.thrusts(time, hover, links)
 
     def _progress(self, time: float) -> tuple[float, Trajectory]:
         """Return the progress along the mission trajectory (s), and that."""
         assert self.mission_trajectory is not None
         return self.system.guidance.progress(time), self.mission_trajectory.trajectory
 
-    def _advance(self, time: float, estimate: Estimate, share: float) -> None:
+    def _advance(self, time: float, estimate: Estimate, thrusts: Array) -> None:
         """Go on to the next phase where this one is over."""
         if self.phase is Phase.SPOOL_UP:
-            if share >= 1.0:
+            if self._spool_up is not None and self._spool_up.share(time) >= 1.0:
                 self._begin_climb(time)
         elif self.phase is Phase.SPOOL_DOWN:
-            if share <= 0.0:
+            if not thrusts.any():
                 self._disarm(time)
         elif self.mission_trajectory is not None:
             progress, trajectory = self._progress(time)
@@ -444,8 +463,10 @@ class Flight:
             RestTrajectory(estimate.x[layout.r_0], time),
             float(estimate.x[layout.Theta][2]),
             time,
+            self.system.team.parameters.m * self.system.team.parameters.g,
             self._settings.takeoff_landing,
         )
         self.control.estimator.setpoints.add(estimate.time, None)
         self.landings += 1
+        self.control.start_links(estimate.time, estimate.x[:12], estimate)
         self.phase = Phase.SPOOL_DOWN

@@ -9,7 +9,8 @@ from gcs.flight.autopilot_requirements import PARAMETERS, missing
 from gcs.flight.team import Team
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.arrays import Array
-from idc_controller.estimation.measurements import PAYLOAD, Measurement, Position, SensorKey
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, SensorKey
+from idc_controller.rotations import rotation_from_quaternion
 
 _QUEUE_WAIT = 0.02
 """s for which datagrams usually wait, at least, on a link that is measured."""
@@ -17,6 +18,8 @@ _MEASURED = 15
 """Datagrams by which its rate is measured."""
 _STAMP = 1e-3
 """Resolution of the stamps of telemetry (s)."""
+_ATTITUDES = 5
+"""Attitudes of each source that are averaged: of white noise a tenth of the limit is never exceeded."""
 _RATE_ERROR = 0.2
 """Of a clock, beyond what jitter makes of the settle time: a simulation that runs at another speed."""
 
@@ -45,6 +48,19 @@ class Preflight:
         self.latest: dict[SensorKey, Measurement] = {}
         """The newest measurements of each source."""
         self._positions: dict[int, list[Array]] = {source: [] for source in (PAYLOAD, *range(len(team.links)))}
+        self._axes: dict[int, list[Array]] = {source: [] for source in self._positions}
+        """Level parts (2,) of the newest attitudes' downward axes of each source."""
+
+    def attitude_errors(self) -> list[float]:
+        """Return the angle between the axes of each vehicle and of the payload unit (N,) (rad); 0: not known yet."""
+        payload, *vehicles = (self._axes[source] for source in (PAYLOAD, *range(len(self._team.links))))
+        if len(payload) < _ATTITUDES:
+            return [0.0] * len(vehicles)
+        level = np.mean(payload, axis=0)
+        return [
+            float(np.linalg.norm(np.mean(axes, axis=0) - level)) if len(axes) == _ATTITUDES else 0.0
+            for axes in vehicles
+        ]
 
     def restart(self, *, landed: bool) -> None:
         """Begin anew: on the pad, or where the payload has ``landed``."""
@@ -53,7 +69,7 @@ class Preflight:
         self.connect_start = self.check_start = math.nan
         self._newest.clear()
         self._intervals.clear()
-        for samples in self._positions.values():
+        for samples in (*self._positions.values(), *self._axes.values()):
             samples.clear()
 
     def connect(self, now: float) -> bool:
@@ -87,7 +103,13 @@ class Preflight:
         """Take telemetry of a vehicle or of the payload unit on the ground."""
         if measurement.has_pose:
             self.latest[measurement.source, type(measurement)] = measurement
-        if isinstance(measurement, Position) and measurement.has_pose:
+        if isinstance(measurement, Attitude):
+            if measurement.has_pose:
+                axes = self._axes[measurement.source]
+                axes.append(rotation_from_quaternion(measurement.pose)[:2, 2])
+                del axes[:-_ATTITUDES]
+            return
+        if measurement.has_pose:
             source, time = measurement.source, measurement.time
             interval = time - self._newest.get(source, math.nan)
             if not interval <= 0.0:

@@ -5,6 +5,7 @@ import numpy as np
 from gcs.config.flight_settings import TakeoffLandingSettings
 from gcs.flight.control_loop import ControlLoop, Setpoints
 from idc_controller.arrays import Array
+from idc_controller.estimation.grounded_links import S_DOT, LinkStates, S
 from idc_controller.estimation.lift_off import LiftOffDetector
 from idc_controller.estimation.settings import LiftOffSettings
 from idc_controller.trajectory.trajectory import Trajectory
@@ -67,26 +68,30 @@ class SpoolUp:
 
 
 class Touchdown:
-    """The payload at rest where it touched down, and the spool-down, which waits until leaning links are upright."""
+    """The payload at rest where it touched down, and the spool-down, which waits until leaning links are upright.
 
-    def __init__(self, trajectory: Trajectory, yaw: float, time: float, settings: TakeoffLandingSettings) -> None:
-        """``trajectory``: rest where it touched down at ``time`` (s); ``yaw`` in rad."""
+    First the ground takes the payload's weight over, all but a share of it that keeps the links taut. A UAV that bears
+    less than its own weight falls with its link, if that leans: this begins only when no link does, or after a timeout.
+    """
+
+    def __init__(
+        self, trajectory: Trajectory, yaw: float, time: float, own_weights: Array, settings: TakeoffLandingSettings
+    ) -> None:
+        """``trajectory``: rest where it touched down at ``time`` (s); ``yaw`` in rad; ``own_weights`` (N,) (N)."""
         self.trajectory, self.yaw = trajectory, yaw
-        self._since, self._settings = time, settings
-        self._leaning, self._least = True, settings.standing_share
+        self._begin, self._own, self._settings = time, own_weights, settings
+        self._upright_at: float | None = None
 
-    def share(self, time: float, lean: float) -> float:
-        """Return the share of the hover thrust at ``time`` (s).
-
-        ``lean``: largest sine of a link's tilt by axis, now or soon.
-        """
+    def thrusts(self, time: float, hover: Array, links: LinkStates) -> Array:
+        """Return the thrusts (N,) at ``time`` (s) of UAVs that need ``hover`` (N,) (N) with the payload in the air."""
         s = self._settings
-        if self._leaning:
-            share = max(1.0 - (time - self._since) / s.spool_down_time, self._least)
-            if share > s.standing_share:
-                return share
-            if lean > s.upright_lean and time - self._since < s.upright_timeout:
-                self._least = s.leaning_share  # with more of it a payload slides in wind
-                return share
-            self._leaning, self._since = False, time - (1.0 - share) * s.spool_down_time
-        return max(1.0 - (time - self._since) / s.spool_down_time, 0.0)
+        carried = max(1.0 - (time - self._begin) / s.unload_time, s.carried_share)
+        standing = self._own + carried * np.maximum(hover - self._own, 0.0)
+        if carried > s.carried_share:
+            return np.asarray(standing)
+        if self._upright_at is None:
+            lean = max(np.abs(links.x[S]).max(), s.lean_time * np.abs(links.x[S_DOT]).max())
+            if lean > s.upright_lean and time - self._begin < s.upright_timeout:
+                return np.asarray(standing)
+            self._upright_at = time
+        return np.maximum(standing - (time - self._upright_at) / s.spool_down_time * hover, 0.0)

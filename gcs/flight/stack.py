@@ -12,6 +12,7 @@ from gcs.mission.model import Mission, Obstacle
 from idc_controller.control.controller import IntegratedDecisionController
 from idc_controller.control.mpc import ModelPredictiveController
 from idc_controller.estimation.estimator import Estimator
+from idc_controller.estimation.grounded_links import GroundedLinks
 from idc_controller.estimation.measurements import MeasurementNoise
 from idc_controller.geometry.free_space import BoundingCylinder, FlightArea
 from idc_controller.geometry.obstacles import ObstacleSource
@@ -36,10 +37,10 @@ def linear_model(config: SystemConfig) -> LinearModel:
     return LinearModel(config.parameters())
 
 
-def estimator(config: SystemConfig, model: LinearModel) -> Estimator:
-    """Return the filter for the sensors of the system file."""
+def measurement_noise(config: SystemConfig) -> MeasurementNoise:
+    """Return the noise of the sensors of the system file."""
     sensors = config.sensors
-    noise = MeasurementNoise(
+    return MeasurementNoise(
         position=sensors.position,
         attitude=float(np.radians(sensors.attitude_deg)),
         uav_velocity=sensors.uav_velocity,
@@ -47,8 +48,17 @@ def estimator(config: SystemConfig, model: LinearModel) -> Estimator:
         payload_velocity=sensors.payload_velocity,
         payload_rates=sensors.payload_rates,
     )
+
+
+def estimator(config: SystemConfig, model: LinearModel) -> Estimator:
+    """Return the filter for the sensors of the system file."""
     settings = config.estimation.estimator.at_rates(config.rates.telemetry, config.rates.control)
-    return Estimator(model, noise, settings)
+    return Estimator(model, measurement_noise(config), settings)
+
+
+def grounded_links(config: SystemConfig, model: LinearModel) -> GroundedLinks:
+    """Return the estimator of the links over a payload on the ground."""
+    return GroundedLinks(model.parameters, measurement_noise(config), config.estimation.estimator.grounded_links)
 
 
 def perception(config: SystemConfig) -> PerceptionSettings:

@@ -14,8 +14,9 @@ from idc_controller.arrays import Array
 from idc_controller.control.force_kernels import directions, setpoints, tracking_error
 from idc_controller.control.ground_controller import GroundController
 from idc_controller.control.load_adaptation import LoadAdaptation
-from idc_controller.control.mpc import Tracker
+from idc_controller.control.mpc import Tracker, TrackingOutput
 from idc_controller.control.settings import ControllerSettings
+from idc_controller.estimation.grounded_links import LinkStates
 from idc_controller.estimation.measurements import Estimate
 from idc_controller.guidance.progress import Guidance
 from idc_controller.guidance.sight import SightLimit
@@ -102,14 +103,15 @@ class IntegratedDecisionController:
         estimate: Estimate,
         mission: Trajectory,
         *,
-        on_ground: bool = False,
+        links: LinkStates | None = None,
         learn_load: bool = True,
     ) -> Decision:
         """Set-points that act from ``estimate.time`` on for one period.
 
-        ``on_ground``: the payload is on the ground. ``learn_load`` is off while the ground may carry part of it.
+        ``links``: those over a payload on the ground; None: it is in the air. ``learn_load`` is off while the ground
+        may carry part of it.
         """
-        begin = self._stopwatch()
+        begin, on_ground = self._stopwatch(), links is not None
         trajectory: PayloadTrajectory = mission
         if not on_ground:
             trajectory = plan(self.safety, self.guidance, estimate, mission, self.load.estimate.air)
@@ -126,12 +128,14 @@ class IntegratedDecisionController:
         stages = flat.part(slice(0, -1))
         error = tracking_error(estimate.x, stages.x[0], self._hover, self.layout.n.start, *self._error_limits)
         ready = self._stopwatch()
-        if not on_ground:
-            self._ground_controller.release()
-        output = (self._ground_controller if on_ground else self.tracker).track(error, stages)
-        tracked = self._stopwatch()
-        u = setpoints(output.delta_u, flat.u[-1], self._hover, self.settings.least_lift)
-        if not on_ground:
+        if links is not None:
+            output = TrackingOutput(np.zeros(self.layout.inputs))
+            u = self._ground_controller.setpoints(links, stages)
+            tracked = self._stopwatch()
+        else:
+            output = self.tracker.track(error, stages)
+            tracked = self._stopwatch()
+            u = setpoints(output.delta_u, flat.u[-1], self._hover, self.settings.least_lift)
             u = self.safety.correct(estimate.time, u, estimate)
         return Decision(
             time=estimate.time,

@@ -2,50 +2,45 @@
 
 The ground holds the payload, so the model of flight does not apply: each UAV is a pendulum above its attachment point,
 
-    m l s'' = -(f - m g) s - f n,
+    m l s'' = -(f - m g) s - f (n + b) - w,
 
-with the link in tension as soon as the thrust f exceeds the UAV's weight. One linear-quadratic regulator serves the
-whole range of thrust; the payload's own error is left to the ground.
+with the link in tension as soon as the thrust f exceeds the UAV's weight; b and w as in
+:mod:`idc_controller.estimation.grounded_links`. One linear-quadratic regulator serves the whole range of thrust, about
+the tilt that holds the link; the payload's own error is left to the ground.
 """
 
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
 from idc_controller.arrays import Array
-from idc_controller.control.mpc import TrackingOutput
 from idc_controller.control.settings import GroundControlSettings
+from idc_controller.estimation.grounded_links import N_DOT, OFF, S_DOT, LinkStates, N, S
 from idc_controller.model.linear import LinearModel, discretised
 from idc_controller.trajectory.flatness import FlatReference
 
 
 class GroundController:
-    """A tracker for the time on the ground; see :class:`~idc_controller.control.mpc.Tracker`."""
+    """Tilt set-points of the time on the ground."""
 
     def __init__(
         self, model: LinearModel, period: float, settings: GroundControlSettings = GroundControlSettings()
     ) -> None:
         """``period`` is the control period (s)."""
-        self.layout = model.layout
-        self._lean = settings.lean_deadband
-        self._step, self._held_max = settings.lean_gain * period, settings.lean_tilt_max
-        self._held = np.zeros((model.layout.number_of_uavs, 2))
-        """Tilt set-points (N, 2) against what makes links lean."""
+        self.layout, self._weight = model.layout, model.parameters.m * model.parameters.g
+        self._tilt_max = settings.tilt_max
         self.gains = np.array([pendulum_gain(model, i, period, settings) for i in range(model.layout.number_of_uavs)])
 
-    def track(self, error: Array, reference: FlatReference) -> TrackingOutput:
-        """Tilt set-points from the UAVs' own errors; thrusts as the reference has them."""
-        layout = self.layout
-        parts = (layout.s, layout.s_dot, layout.n, layout.n_dot, layout.n_acc)
-        states = np.stack([error[part].reshape(-1, 2) for part in parts], axis=1)  # (N, 5, 2)
-        lean = states[:, 0]
-        held = self._held + self._step * (lean - np.clip(lean, -self._lean, self._lean))
-        self._held = np.clip(held, -self._held_max, self._held_max)
-        tilt = self._held - np.einsum("ik,ikc->ic", self.gains, states)
-        return TrackingOutput(np.concatenate([tilt.ravel(), np.zeros(layout.number_of_uavs)]))
-
-    def release(self) -> None:
-        """Forget what made links lean: the payload is in the air."""
-        self._held[:] = 0.0
+    def setpoints(self, links: LinkStates, reference: FlatReference) -> Array:
+        """Return tilts and thrusts (3 N,) that bring ``links`` to those of the ``reference``, with its thrusts."""
+        layout, x, f, weight = self.layout, reference.x[0], links.thrust[:, None], self._weight[:, None]
+        lean, rate = (x[part].reshape(-1, 2) for part in (layout.s, layout.s_dot))
+        holding = -links.x[OFF] - (links.drag + (f - weight) * lean) / np.maximum(f, weight)
+        states = np.stack([links.x[S] - lean, links.x[S_DOT] - rate, links.x[N] - holding, *links.x[N_DOT:]], axis=1)
+        tilts = holding - np.einsum("ik,ikc->ic", self.gains, states)
+        size = np.maximum(np.linalg.norm(tilts, axis=1, keepdims=True), self._tilt_max)
+        u = reference.u[0].copy()
+        u[layout.n_setpoint] = (tilts * (self._tilt_max / size)).ravel()
+        return np.asarray(u)
 
 
 def pendulum_dynamics(model: LinearModel, uav: int, share: float) -> tuple[Array, Array]:

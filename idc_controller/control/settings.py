@@ -81,12 +81,10 @@ class MpcSettings(SettingsTable):
 class GroundControlSettings(SettingsTable):
     """Regulator that keeps the UAVs upright over a payload on the ground."""
 
-    design_share: float = 0.8  # thrust for which the gain is designed, over hover thrust
+    design_share: float = 0.6  # thrust for which the gain is designed, over hover thrust: with it links come upright
     # weights of link tilt, its rate, UAV tilt, its rate, its acceleration
     state: tuple[float, float, float, float, float] = (100.0, 80.0, 1.0, 0.1, 0.0)
-    lean_deadband: float = 0.02  # sine of a link's lean that is left; more is taken for wind or a wrong attitude
-    lean_gain: float = 0.35  # 1/s; with which tilt set-points grow against it
-    lean_tilt_max: float = 0.3  # largest of those, over the force in hover: a link may lean on what stands there
+    tilt_max: float = 0.3  # sine of the largest tilt set-point
     setpoint: float = 200.0  # weight of the tilt set-point: a lower one needs telemetry that is less than 0.2 s late
 
 

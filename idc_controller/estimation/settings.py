@@ -201,6 +201,28 @@ class InnovationMonitorSettings(SampledSettings):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class GroundedLinksSettings(SettingsTable):
+    """Links over a payload on the ground: initial uncertainties, noise densities per square root of a second."""
+
+    tilt: float = 0.02  # initial uncertainty of the lateral parts of the link directions
+    tilt_rate: float = 0.02  # 1/s; of their derivatives
+    thrust_error: float = 0.02  # rad; of the error of the thrust directions
+    direction: float = 0.01  # of the thrust directions
+    link_acceleration: float = 0.1  # 1/s2/sqrt(s); gusts, and a payload that slides
+    thrust_error_walk: float = 0.2  # rad/sqrt(s); an attitude that becomes wrong by 0.1 rad is to be found in 0.25 s
+    error_time_constant: float = 0.5  # s; of what the UAVs have in common of these errors
+    position_gap: float = 0.2  # s; without a position, after which a UAV has that, too
+    uav_jerk: float = 20.0  # 1/s3/sqrt(s); of thrust directions: some set-points are lost
+    position_noise_min: float = 0.01  # m; least standard deviations of the measurements: the model's own errors
+    velocity_noise_min: float = 0.02  # m/s
+    attitude_noise_min: float = 0.003  # rad
+    payload_share: Share = 0.1  # of an innovation of the payload's position that its estimate follows
+    payload_step_max: float = 0.1  # m; of such an innovation: more is an error of its unit
+    payload_speed_max: float = 0.5  # m/s; at which it slides
+    innovation_max: float = 5.0  # standard deviations; larger innovations count as this: outliers do not move the state
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class EstimatorSettings(SettingsTable):
     """All settings of the estimator, by part."""
 
@@ -217,6 +239,7 @@ class EstimatorSettings(SettingsTable):
     dead_reckoning: DeadReckoningSettings = field(default_factory=DeadReckoningSettings)
     adaptation: NoiseAdaptationSettings = field(default_factory=NoiseAdaptationSettings)
     setpoints: SetpointHistorySettings = field(default_factory=SetpointHistorySettings)
+    grounded_links: GroundedLinksSettings = field(default_factory=GroundedLinksSettings)
 
     def at_rates(self, telemetry: float, setpoints: float) -> Self:
         """Return the settings at the rates (Hz) of telemetry and set-points."""

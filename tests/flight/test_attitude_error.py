@@ -1,22 +1,27 @@
 """A vehicle that flies by a wrong attitude, found by the force that it pulls aside with."""
 
+from statistics import NormalDist
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from gcs.config import SystemConfig
-from gcs.flight.attitude_error import attitude_wrong
+from gcs.flight.attitude_error import attitude_misaligned, attitude_wrong
 from gcs.flight.condition import Moment
 from gcs.flight.phase import Phase
+from gcs.flight.preflight import Preflight
+from idc_controller.estimation.measurements import PAYLOAD, Attitude
+from idc_controller.rotations import quaternion_from_euler
 
 PARAMETERS = SystemConfig().parameters()
 LIMIT = SystemConfig().flight.failsafe.attitude_error
 
 
-def trigger(force, clear=True):
-    """Return what is found of forces (4, 2) (N) on the UAVs."""
-    estimate = SimpleNamespace(uav_force=np.column_stack([force, np.zeros(4)]))
+def trigger(force, clear=True, deviation=0.05):
+    """Return what is found of forces (4, 2) (N) on the UAVs that are known to a standard ``deviation`` (N)."""
+    covariance = np.diag([1.0] * 20 + [deviation**2] * 8 + [1.0])  # of other states, the forces, and the mass
+    estimate = SimpleNamespace(uav_force=np.column_stack([force, np.zeros(4)]), covariance=covariance)
     system = SimpleNamespace(
         payload=SimpleNamespace(is_clear=lambda of: clear), settings=SystemConfig().flight.failsafe,
         team=SimpleNamespace(parameters=PARAMETERS, links=[SimpleNamespace(system_id=i + 1) for i in range(4)]),
@@ -35,6 +40,40 @@ def test_vehicle_that_pulls_aside_is_named_with_the_error_and_its_limit():
     found = trigger(aside(0.1))
     assert found.vehicles == (2,)
     assert found.reason == f"the thrust of vehicle 3 is 0.10 rad off its attitude (limit {LIMIT:g} rad)"
+
+
+def test_error_is_a_failsafe_only_where_the_filter_is_certain_of_it():
+    beyond = 0.02 * PARAMETERS.hover_thrust[2]  # N, of the error over its limit
+    own = np.sqrt(4.0 / 3.0)  # of a force less the mean of three others
+    quantile = NormalDist().inv_cdf(SystemConfig().flight.failsafe.attitude_certainty)
+    assert trigger(aside(LIMIT + 0.02), deviation=0.9 * beyond / (own * quantile)) is not None
+    assert trigger(aside(LIMIT + 0.02), deviation=1.1 * beyond / (own * quantile)) is None
+
+
+def pad(*errors, phase=Phase.SPOOL_UP, payload=0.0, samples=10):
+    """Return what is found on the pad of vehicles with attitudes ``errors`` (rad) about east."""
+    links = [SimpleNamespace(system_id=i + 1) for i in range(len(errors))]
+    preflight, rng = Preflight(SimpleNamespace(links=links)), np.random.default_rng(1)
+    for source, error in ((PAYLOAD, payload), *enumerate(errors)):
+        for k in range(samples):
+            roll, pitch = rng.normal((0.0, error), SystemConfig().sensors.attitude_deg * np.pi / 180.0)
+            turn = quaternion_from_euler(roll, pitch, 0.3)
+            preflight.add(Attitude(0.04 * k, source, turn, np.zeros(3)))
+    team = SimpleNamespace(links=links)
+    system = SimpleNamespace(preflight=preflight, team=team, settings=SystemConfig().flight.failsafe)
+    return attitude_misaligned(system, Moment(phase, 1.0, 1.0))
+
+
+def test_vehicle_whose_attitude_is_not_the_payloads_is_named_before_it_is_lifted():
+    found = pad(0.0, 0.0, 0.1, 0.0)
+    assert found.vehicles == (2,) and "vehicle 3 reports an attitude 0.10 rad off the payload's" in found.reason
+    assert pad(0.0, 0.0, 0.1, 0.0, phase=Phase.FLY) is None
+    assert pad(0.0, 0.0, 0.1, 0.0, samples=3) is None
+
+
+def test_slope_of_the_pad_is_no_wrong_attitude_and_a_wrong_payload_unit_is_named():
+    assert pad(0.06, 0.06, 0.06, 0.06, payload=0.06) is None
+    assert pad(0.0, 0.0, 0.0, 0.0, payload=0.1).source == "payload"
 
 
 @pytest.mark.parametrize(("error", "clear"), [(0.0, True), (0.06, True), (0.2, False)])

@@ -14,6 +14,7 @@ from gcs.flight.control_loop import ControlLoop, Hold, Setpoints, StepRecord
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.setpoints import attitude_target
+from idc_controller.estimation.grounded_links import LinkStates
 from idc_controller.rotations import rotation_from_quaternion
 from idc_controller.safety.filter_protocol import NoObstacles
 from idc_controller.trajectory.stop_plan import Braking
@@ -25,7 +26,9 @@ SPOTS = np.array([HOVER, *(HOVER + P.p - P.l[:, None] * [0.0, 0.0, 1.0])])
 
 def control_loop(brake=lambda time, state: Braking(), stopwatch=lambda: 0.0):
     controller = stack.controller(SYSTEM, MODEL, NoObstacles(), stopwatch)
-    loop = ControlLoop(stack.estimator(SYSTEM, MODEL), controller, ComputeTimes(stopwatch), brake)
+    loop = ControlLoop(
+        stack.estimator(SYSTEM, MODEL), controller, ComputeTimes(stopwatch), stack.grounded_links(SYSTEM, MODEL), brake
+    )
     loop.estimator.start(5.0, AT_REST)
     return loop
 
@@ -50,7 +53,7 @@ def flown(loop, steps, shift):
         for taken in telemetry(time, shift):
             loop.estimator.add(taken)
         estimate = loop.estimate(time + PERIOD, REST)
-        records.append(loop.decide(estimate, REST, on_ground=False, learn_load=False))
+        records.append(loop.decide(estimate, REST, learn_load=False))
         loop.send(records[-1], time + PERIOD, np.full(N, time))
     return records
 
@@ -79,7 +82,7 @@ def test_measured_shift_of_the_team_is_answered_by_thrust_against_it(axis, sign)
 def test_sent_setpoints_act_on_the_estimate_from_their_time_on():
     pulled = control_loop()
     estimate = pulled.estimate(5.0 + PERIOD, REST)
-    record = pulled.decide(estimate, REST, on_ground=False, learn_load=False)
+    record = pulled.decide(estimate, REST, learn_load=False)
     north = record.decision.u.copy()
     north[0 : 2 * N : 2] = 0.2
     leaning = StepRecord(record.estimate, record.decision._replace(u=north))
@@ -101,7 +104,7 @@ def test_stop_plan_goes_out_with_the_setpoints_and_brakes_as_asked():
     usual, slow = control_loop(), control_loop(brake)
     assert usual.stop_plan is None
     for loop in (usual, slow):
-        record = loop.decide(estimated(v_0=np.array([0.5, 0.0, 0.0])), REST, on_ground=False, learn_load=False)
+        record = loop.decide(estimated(v_0=np.array([0.5, 0.0, 0.0])), REST, learn_load=False)
         loop.send(record, 5.0, np.full(N, 4.95))
     assert slow.stop_plan.start == usual.stop_plan.start == 5.0
     assert slow.stop_plan.duration == pytest.approx(2.0 * usual.stop_plan.duration)
@@ -113,7 +116,7 @@ def test_stop_plan_goes_out_with_the_setpoints_and_brakes_as_asked():
 def test_stop_plan_goes_on_only_with_what_all_vehicles_have_received(monkeypatch):
     loop = control_loop()
     assert loop.stop_plan is None
-    record = loop.decide(estimated(), REST, on_ground=False, learn_load=False)
+    record = loop.decide(estimated(), REST, learn_load=False)
     hold = Hold(5.0, 0.9)
     times = [PERIOD * k for k in range(12)]
 
@@ -130,13 +133,16 @@ def test_stop_plan_goes_on_only_with_what_all_vehicles_have_received(monkeypatch
     assert send(times[9], times[9])[0] == times[9]
 
 
+UPRIGHT = LinkStates(np.zeros((6, N, 2)), SYSTEM.parameters().hover_thrust, np.zeros(2))
+
+
 def test_load_is_learnt_in_the_air_where_it_is_clear():
     on_uavs = np.zeros((N, 3))
     on_uavs[:, 0] = 0.3
     for options, learns in (
-        ({"on_ground": False, "learn_load": True}, True),
-        ({"on_ground": False, "learn_load": False}, False),
-        ({"on_ground": True, "learn_load": True}, False),
+        ({"learn_load": True}, True),
+        ({"learn_load": False}, False),
+        ({"links": UPRIGHT, "learn_load": True}, False),
     ):
         loop = control_loop()
         for _ in range(20):

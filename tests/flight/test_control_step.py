@@ -21,6 +21,7 @@ from gcs.mavlink.settings import LinkSettings
 from idc_controller.control.controller import IntegratedDecisionController
 from idc_controller.control.load_adaptation import LoadAdaptation
 from idc_controller.control.settings import ControllerSettings
+from idc_controller.estimation.grounded_links import LinkStates, S
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Estimate, Position
 from idc_controller.estimation.setpoint_history import Confirmation
 from idc_controller.model.drag import Air, drag_coefficients
@@ -180,9 +181,10 @@ def test_controller_tracks_the_reference_that_the_estimator_is_given():
 
 
 def test_vehicles_over_payload_on_the_ground_are_held_upright_by_themselves():
-    lean = np.zeros(2 * N)
-    lean[2:4] = 0.05, -0.1
-    decision = controller().decide(estimated(s=lean, r_0=np.array([0.3, 0.0, 0.0])), REST, on_ground=True)
+    x = np.zeros((6, N, 2))
+    x[S, 1] = 0.05, -0.1
+    links = LinkStates(x, P.hover_thrust, np.zeros(2))
+    decision = controller().decide(estimated(r_0=np.array([0.3, 0.0, 0.0])), REST, links=links)
     assert decision.directions[1, 0] > 0.002 and decision.directions[1, 1] < -0.004
     assert decision.directions[[0, 2, 3]] == pytest.approx(np.tile([0.0, 0.0, -1.0], (3, 1)), abs=1e-6)
     assert decision.thrusts == pytest.approx(P.hover_thrust, rel=0.02)

@@ -1,37 +1,52 @@
-"""Spool-down: the thrust fades once no link leans any more."""
+"""Spool-down: the ground takes the payload over at once; the thrust fades once no link leans any more."""
 
 import numpy as np
 import pytest
 
 from gcs.config.flight_settings import DEFAULTS
 from gcs.flight.spool import Touchdown
+from idc_controller.estimation.grounded_links import LinkStates, S
 from idc_controller.trajectory.trajectory import RestTrajectory
 
-S = DEFAULTS.takeoff_landing
+SETTINGS = DEFAULTS.takeoff_landing
+OWN, HOVER = np.full(4, 7.0), np.full(4, 15.0)
+STANDING = OWN + SETTINGS.carried_share * (HOVER - OWN)
 
 
 def touchdown():
-    return Touchdown(RestTrajectory(np.zeros(3), 10.0), 0.0, 10.0, S)
+    return Touchdown(RestTrajectory(np.zeros(3), 10.0), 0.0, 10.0, OWN, SETTINGS)
 
 
-def test_spool_down_begins_at_once_with_upright_links():
+def thrusts(spool, elapsed, lean=0.0, hover=HOVER):
+    """Thrusts at ``elapsed`` (s) after touch-down with one link that leans."""
+    x = np.zeros((6, 4, 2))
+    x[S, 2, 1] = lean
+    return spool.thrusts(10.0 + elapsed, hover, LinkStates(x, hover, np.zeros(2)))
+
+
+def test_spool_down_begins_with_the_payload_and_ends_without_thrust_where_links_are_upright():
     spool = touchdown()
-    for k in range(50):
-        elapsed = 0.05 * k
-        assert spool.share(10.0 + elapsed, 0.0) == pytest.approx(max(1.0 - elapsed / S.spool_down_time, 0.0), abs=0.03)
+    assert thrusts(spool, 0.0) == pytest.approx(HOVER)
+    assert thrusts(spool, SETTINGS.unload_time) == pytest.approx(STANDING)
+    fading = [thrusts(spool, SETTINGS.unload_time + 0.1 * k)[0] for k in range(21)]
+    assert np.all(np.diff(fading)[: round(STANDING[0] / HOVER[0] * 20) - 1] < 0.0) and fading[-1] == 0.0
 
 
-def test_spool_down_waits_for_leaning_links_with_less_thrust():
+def test_spool_down_keeps_uavs_above_their_own_weight_until_leaning_links_are_upright():
     spool = touchdown()
-    shares = [spool.share(10.0 + 0.1 * k, 2.0 * S.upright_lean) for k in range(30)]
-    assert min(shares) == shares[-1] == S.leaning_share < S.standing_share
-    assert spool.share(13.0, 0.5 * S.upright_lean) == pytest.approx(S.leaning_share)
-    assert spool.share(13.0 + 0.5 * S.leaning_share * S.spool_down_time, 2.0 * S.upright_lean) == pytest.approx(
-        0.5 * S.leaning_share
-    )
+    kept = [thrusts(spool, 0.1 * k, -2.0 * SETTINGS.upright_lean) for k in range(30)]
+    assert np.min(kept) == pytest.approx(STANDING[0]) and STANDING[0] > OWN[0]
+    assert thrusts(spool, 3.0, 0.5 * SETTINGS.upright_lean) == pytest.approx(STANDING)
+    later = 3.0 + 0.5 * SETTINGS.spool_down_time
+    assert thrusts(spool, later, 2.0 * SETTINGS.upright_lean) == pytest.approx(STANDING - 0.5 * HOVER)
+
+
+def test_uavs_keep_above_their_own_weight_over_a_payload_that_weighs_little():
+    light = OWN + 0.5
+    assert np.all(thrusts(touchdown(), 1.0, 1.0, light) > OWN)
 
 
 def test_spool_down_waits_for_links_until_its_timeout():
     spool = touchdown()
-    assert spool.share(10.0 + S.upright_timeout + 0.05, 1.0) == pytest.approx(S.standing_share)
-    assert spool.share(10.0 + S.upright_timeout + S.spool_down_time + 0.05, 1.0) == 0.0
+    assert thrusts(spool, SETTINGS.upright_timeout + 0.05, 1.0) == pytest.approx(STANDING)
+    assert not thrusts(spool, SETTINGS.upright_timeout + SETTINGS.spool_down_time + 0.05, 1.0).any()

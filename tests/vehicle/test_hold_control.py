@@ -42,15 +42,17 @@ class PlainHold:
 
     def __init__(self, plan, integral_max):
         self.plan, self.integral_max = plan, integral_max
-        self.integral, self.last, self.stands_at = np.zeros(2), plan.start, None
+        self.integral, self.last, self.stands_at, self.stands_since = np.zeros(2), plan.start, None, None
 
     def force(self, sample, now, supported):
         position, velocity = np.array(sample.position), np.array(sample.velocity)
         if supported:
-            self.stands_at = position if self.stands_at is None else self.stands_at
-            wanted, carried = (self.stands_at, np.zeros(3), np.zeros(3)), LEAST
+            if self.stands_at is None:
+                self.stands_at, self.stands_since = position, now
+            share = max(1.0 - (now - self.stands_since) / GAINS.unload_time, 0.0)
+            wanted, carried = (self.stands_at, np.zeros(3), np.zeros(3)), LEAST + share * (HOVER - LEAST)
         else:
-            self.stands_at = None
+            self.stands_at, share = None, 1.0
             wanted, carried = tuple(map(np.array, self.plan.at(now))), HOVER
         step = min(max(now - self.last, 0.0), GAINS.step_max)
         self.last = now
@@ -59,10 +61,11 @@ class PlainHold:
         if not supported:
             self.integral = integral
         level = wanted[2][:2] + GAINS.horizontal_kp * error[:2] + GAINS.horizontal_kd * drift[:2]
-        level = bounded(level + (0.0 if supported else integral), GAINS.horizontal_max * G)
+        level = bounded(level + (share * self.integral if supported else integral), GAINS.horizontal_max * G)
         up = wanted[2][2] + GAINS.vertical_kp * error[2] + GAINS.vertical_kd * drift[2]
         up = np.clip(up, -GAINS.vertical_max * G, (1.0 - LEAST / HOVER) * G)
-        return carried / G * np.array([*level, up - G])
+        force = carried / G * np.array([*level, up - G])
+        return bounded(force, carried) if supported else force
 
 
 @settings(deadline=None, derandomize=True, max_examples=20)
@@ -108,17 +111,24 @@ def test_thrust_is_never_less_than_the_least_in_the_air():
 
 
 def test_vehicle_of_a_standing_payload_stays_where_it_was_then():
-    """It carries itself, and forgets nothing that it has learned of the wind."""
+    """It hands the payload over with what holds its link, and forgets nothing that it has learned of the wind."""
     controller = HoldController(STAY, HOVER, LEAST, G, GAINS)
     for k in range(20):
         before = controller.command(measured((2.0, -2.0, -6.0)), 0.1 * k)
     beside = measured((9.0, 9.0, -3.0))
-    for k in range(3):
-        attitude, thrust = controller.command(beside, 2.0 + 0.1 * k, supported=True)
-        assert thrust == pytest.approx(LEAST) and attitude[1:3] == pytest.approx((0.0, 0.0))
-    moved = controller.command(measured((9.1, 9.0, -3.0)), 2.3, supported=True)
-    assert force_of(moved)[0] == pytest.approx(-0.1 * GAINS.horizontal_kp / G * LEAST, rel=1e-6)
-    np.testing.assert_allclose(force_of(controller.command(measured((2.0, -2.0, -6.0)), 2.3)), force_of(before))
+    tilts = []
+    for share in (1.0, 0.5, 0.25):
+        command = controller.command(beside, 2.0 + (1.0 - share) * GAINS.unload_time, supported=True)
+        assert command[1] == pytest.approx(LEAST + share * (HOVER - LEAST))
+        tilts.append(force_of(command)[:2] / command[1] / share)
+    assert np.linalg.norm(tilts[0]) > 0.01
+    np.testing.assert_allclose(tilts, [tilts[0]] * 3, rtol=0.02, atol=1e-9)  # the angle, not its tangent
+    end = 2.0 + GAINS.unload_time
+    attitude, thrust = controller.command(beside, end, supported=True)
+    assert thrust == pytest.approx(LEAST) and attitude[1:3] == pytest.approx((0.0, 0.0))
+    moved = controller.command(measured((9.1, 9.0, -3.0)), end, supported=True)
+    assert force_of(moved)[0] == pytest.approx(-0.1 * GAINS.horizontal_kp / G * LEAST, rel=1e-3)
+    np.testing.assert_allclose(force_of(controller.command(measured((2.0, -2.0, -6.0)), end)), force_of(before))
 
 
 def test_stop_ends_at_rest_where_braking_at_the_limit_leads():

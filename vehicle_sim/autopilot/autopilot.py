@@ -230,10 +230,7 @@ class Autopilot:
         measured = state.navigation.estimate
         assert measured is not None
         if state.hold is not None:
-            supported = state.is_supported(now)
-            attitude, thrust = state.hold.command(measured, now, supported)
-            if supported:  # whatever the altitude says, which may drift
-                thrust = min(thrust, state.supported_thrust)
+            attitude, thrust = state.hold.command(measured, now, state.is_supported(now))
             state.actuation.command(attitude, NO_RATES, thrust, now)
         else:
             level = attitude_of_force(0.0, 0.0, -1.0, euler_of(measured.attitude)[2])

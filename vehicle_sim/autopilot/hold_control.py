@@ -127,24 +127,26 @@ class HoldController:
         self._integral_x = 0.0
         self._integral_y = 0.0
         self._last_time = plan.start
-        self._supported_at: Vector | None = None
+        self._supported: tuple[float, Vector] | None = None
+        """Since when the payload stands (s), and where the vehicle was then (m)."""
 
     def command(self, measured: Measurement, now: float, supported: bool = False) -> tuple[Quaternion, float]:
         """Attitude set-point (unit quaternion body to world) and thrust (N).
 
-        ``supported``: the payload stands on the ground. The vehicle then carries its own weight only, where it is: the
-        integral that held the payload against the wind would drive it aside, and tip its link over.
+        ``supported``: the payload stands on the ground. The vehicle then hands it over, where it is. The integral that
+        held the payload against the wind goes with the payload's weight: the link, which leans by both, stays as it is.
         """
         gains = self._settings
         x, y, z = measured.position
         if supported:
-            self._supported_at = self._supported_at or measured.position
-            position, velocity, acceleration = PlannedState(self._supported_at, AT_REST, AT_REST)
-            carried = self._thrust_min
+            since, place = self._supported = self._supported or (now, measured.position)
+            position, velocity, acceleration = PlannedState(place, AT_REST, AT_REST)
+            share = max(1.0 - (now - since) / gains.unload_time, 0.0)
+            thrust_max = carried = self._thrust_min + share * max(self._hover_thrust - self._thrust_min, 0.0)
         else:
-            self._supported_at = None
+            self._supported = None
             position, velocity, acceleration = self.plan.at(now)
-            carried = self._hover_thrust
+            share, carried, thrust_max = 1.0, self._hover_thrust, math.inf
         v_x, v_y, v_z = measured.velocity
         error_x, error_y = position[0] - x, position[1] - y
         step = min(max(now - self._last_time, 0.0), gains.step_max)
@@ -155,7 +157,7 @@ class HoldController:
         if size > gains.integral_max:
             i_x, i_y = i_x * gains.integral_max / size, i_y * gains.integral_max / size
         if supported:
-            i_x = i_y = 0.0
+            i_x, i_y = share * self._integral_x, share * self._integral_y
         else:
             self._integral_x, self._integral_y = i_x, i_y
 
@@ -169,4 +171,5 @@ class HoldController:
         # Downwards as far as the least thrust allows: of a load that was lost, the learned thrust still carries all.
         up = min(max(g - a_z, self._up_min), (1.0 + gains.vertical_max) * g)
         thrust = carried / g * math.sqrt(a_x * a_x + a_y * a_y + up * up)
-        return attitude_of_force(a_x, a_y, -up, self.plan.yaw), max(thrust, self._thrust_min)
+        # Over a payload that stands the thrust is bounded, whatever the altitude says, which may drift.
+        return attitude_of_force(a_x, a_y, -up, self.plan.yaw), min(max(thrust, self._thrust_min), thrust_max)

@@ -1,5 +1,6 @@
 """The campaign file: which faults, how severe, in which missions, with which seeds. Read strictly."""
 
+import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -23,7 +24,7 @@ from gcs.mission.model import Limits, Name
 from gcs.mission.own import named
 
 Severity = Annotated[dict[str, Annotated[tuple[Any, ...], Field(min_length=1, max_length=1000)]], Field(min_length=1)]
-_OWN_KEYS = ("name", "severity", "start_between", "one_vehicle")
+_OWN_KEYS = ("name", "severity", "start_between", "one_vehicle", "wind_max")
 
 _OTHER_FILES = {
     "mission": "this is a mission, no campaign: gcs fly flies it",
@@ -55,6 +56,7 @@ class SweptTable:
     severity: Severity | None = None
     start_between: tuple[NotNegative, NotNegative] | None = None
     one_vehicle: bool = False
+    wind_max: NotNegative | None = None
 
 
 @strict
@@ -144,7 +146,9 @@ def read_campaign(path: Path) -> CampaignFile:
 
 def _paired_fault(tables: CampaignTables, case: Case) -> PairedFault:
     one_vehicle = tuple(tables.fault[swept.table].one_vehicle for swept in case.faults)
-    return PairedFault(case_name(case.name, case.severity), case.faults, one_vehicle)
+    limits = (tables.fault[swept.table].wind_max for swept in case.faults)
+    wind_max = min((limit for limit in limits if limit is not None), default=math.inf)
+    return PairedFault(case_name(case.name, case.severity), case.faults, one_vehicle, wind_max)
 
 
 def _seeds(table: CampaignTable) -> tuple[int, ...]:
@@ -274,6 +278,8 @@ def _swept_fault(file: ParsedFile, index: int, table: SweptTable, level: int, pa
         problems.append(file.problem(("fault", index, "one_vehicle"), reason))
     elif table.one_vehicle:
         values = {**values, "vehicles": (1,)}
+    if table.wind_max is not None and pairs is None:
+        problems.append(file.problem(("fault", index, "wind_max"), "goes with [pairs]"))
     if problems:
         raise UnusableFile(problems)
     # An error in a swept value is reported at the line of its list.

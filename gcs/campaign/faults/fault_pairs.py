@@ -42,12 +42,14 @@ class PairsTable:
 class PairedFault:
     """A fault of one name: its tables, each of the campaign file's table of that number (from 0).
 
-    ``one_vehicle``: of each, whether it is of one vehicle, which is drawn for each flight.
+    ``one_vehicle``: of each, whether it is of one vehicle, which is drawn for each flight. ``wind_max``: what wind can
+    be flown with it (m/s): that of the flight is no stronger.
     """
 
     name: str
     faults: tuple[SweptFault, ...]
     one_vehicle: tuple[bool, ...]
+    wind_max: float = math.inf
 
     @property
     def is_wind(self) -> bool:
@@ -131,12 +133,15 @@ def pair_cases(table: PairsTable, faults: Sequence[PairedFault], seed: int, team
 def _case(table: PairsTable, combination: Combination, seed: int, team: int) -> Case:
     generator = np.random.default_rng([seed, 1])
     first, second, (phase, within), delay, wind = combination
+    wind_max = min(paired.wind_max for paired in (first, second) if paired is not None)
+    wind = min(wind, wind_max)
     offset = round(float(generator.uniform(_LEAST_OFFSET, table.phases[phase])), 3) if within else 0.0
 
     def placed(paired: PairedFault, later: float) -> list[SweptFault]:
         vehicle = int(generator.integers(1, team + 1))
         return [
-            replace(swept, fault=replace(swept.fault, start_phase=phase, start_offset=round(offset + later, 3),
+            replace(swept, fault=replace(_no_stronger(swept.fault, wind_max), start_phase=phase,
+                                         start_offset=round(offset + later, 3),
                                          vehicles=(vehicle,) if one else swept.fault.vehicles))
             for swept, one in zip(paired.faults, paired.one_vehicle, strict=True)
         ]  # fmt: skip
@@ -153,5 +158,13 @@ def _case(table: PairsTable, combination: Combination, seed: int, team: int) -> 
         swept.insert(0, SweptFault(own, 0))
     name = first.name if second is None else f"{first.name}, then {second.name}"
     factors = {"first": first.name, "second": second.name if second is not None else "", "phase": phase,
-               "within": within, "delay": delay, "wind": wind}  # fmt: skip
+               "within": within, "delay": delay, "wind": combination.wind}  # fmt: skip
     return Case(name, 1, ", ".join(parts), tuple(swept), seed, factors)
+
+
+def _no_stronger(fault: Fault, limit: float) -> Fault:
+    """Return a fault whose wind, if it is one, is no stronger than ``limit`` (m/s)."""
+    if fault.kind != "wind" or (speed := math.hypot(*fault.settings["velocity"])) <= limit:
+        return fault
+    velocity = [round(component * limit / speed, 2) for component in fault.settings["velocity"]]
+    return replace(fault, settings={**fault.settings, "velocity": velocity})

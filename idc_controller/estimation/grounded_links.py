@@ -1,0 +1,225 @@
+"""Links over a payload on the ground: their tilts, and by how much each UAV's thrust is off its attitude.
+
+The ground holds the payload, so the model of flight does not apply: each UAV is a pendulum above its attachment point,
+
+    m l s'' = -(f - m g) s - f (n + b) - w,
+
+with the link's tilt s and the thrust direction n as in :mod:`idc_controller.model.linear`, the thrust f, the drag w of
+the wind, and b what the thrust is off the attitude: by an attitude that is wrong on board, and by what else of its own
+pulls the UAV aside. One Kalman filter a UAV takes its positions and attitudes, about the payload as its unit reports
+it. A UAV without a position goes on by its attitudes and set-points, and by its own part of the b that was found
+before; the wind's part is that of the others.
+"""
+
+import math
+from collections import deque
+from typing import NamedTuple
+
+import numpy as np
+
+from idc_controller.arrays import Array
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise
+from idc_controller.estimation.settings import GroundedLinksSettings
+from idc_controller.parameters import SystemParameters
+from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
+
+S, S_DOT, OFF, N, N_DOT, N_ACC = range(6)
+"""Rows of a state: s, s', b, n, n', n''."""
+_TERMS = 9
+"""Of the series of a matrix exponential: over :data:`_STEP_MAX` the attitude loop's next one is below 1e-6."""
+_STEP_MAX = 0.05  # s
+_AHEAD_MAX = 0.5  # s; of a measurement after the newest set-points act: its time is wrong
+
+
+DEFAULTS = GroundedLinksSettings()
+
+
+class LinkStates(NamedTuple):
+    """State of the links at one time."""
+
+    x: Array
+    """s, s', b, n, n', n'' by axis, north and east (6, N, 2)."""
+    thrust: Array
+    """f (N,) (N)"""
+    drag: Array
+    """w (2,) (N)"""
+
+
+class _Command(NamedTuple):
+    """Set-points from ``time`` (s) on: tilts (N, 2), thrusts (N,) (N)."""
+
+    time: float
+    tilts: Array
+    thrusts: Array
+
+
+class _Payload:
+    """The payload on the ground, by its unit's telemetry: it stands, or slides."""
+
+    def __init__(self, time: float, x: Array, settings: GroundedLinksSettings) -> None:
+        """``x``: position, velocity, Euler angles and body rates (12,) at ``time`` (s)."""
+        self._time, self._settings = time, settings
+        self._position, self._velocity = x[:3].copy(), np.zeros(3)
+        self._turn, self._rates = rotation_from_quaternion(quaternion_from_euler(*x[6:9])), np.zeros(3)
+
+    def add(self, measurement: Measurement) -> None:
+        """Take a measurement of its unit."""
+        s = self._settings
+        if isinstance(measurement, Attitude):
+            if measurement.has_pose and measurement.has_motion:
+                self._turn, self._rates = rotation_from_quaternion(measurement.pose), measurement.motion
+            return
+        if measurement.has_motion:
+            self._velocity = np.clip(measurement.motion, -s.payload_speed_max, s.payload_speed_max)
+        if measurement.has_pose and measurement.time > self._time:
+            predicted = self._position + (measurement.time - self._time) * self._velocity
+            off = np.clip(measurement.pose - predicted, -s.payload_step_max, s.payload_step_max)
+            self._time, self._position = measurement.time, predicted + s.payload_share * off
+
+    def attachment(self, place: Array) -> tuple[Array, Array]:
+        """Return position (3,) (m) and velocity (3,) (m/s) of the ``place`` (3,) in its frame."""
+        return self._position + self._turn @ place, self._velocity + self._turn @ np.cross(self._rates, place)
+
+
+class GroundedLinks:
+    """Estimates the links of a team on the ground. Times are those of the measurements' clock (s)."""
+
+    def __init__(
+        self,
+        parameters: SystemParameters,
+        noise: MeasurementNoise = MeasurementNoise(),
+        settings: GroundedLinksSettings = DEFAULTS,
+    ) -> None:
+        """``noise`` of the sensors."""
+        self._parameters, self._settings = p, s = parameters, settings
+        number = p.number_of_uavs
+        self._weight, self._inertia = p.m * p.g, p.m * p.l
+        self._loop = np.array([-p.attitude_kp, -p.attitude_kd, -1.0]) / p.motor_time_constant
+        self._variance = np.square(
+            [max(noise.position, s.position_noise_min), max(noise.uav_velocity, s.velocity_noise_min)]
+        )
+        self._direction_variance = max(noise.attitude, s.attitude_noise_min) ** 2
+        self._density = np.square([0.0, s.link_acceleration, s.thrust_error_walk, 0.0, 0.0, s.uav_jerk])
+        self._initial = np.square([s.tilt, s.tilt_rate, s.thrust_error, s.direction, 0.0, 0.0])
+        self._times = np.zeros(number)
+        self._x, self._P = np.zeros((number, 6, 2)), np.zeros((number, 6, 6))
+        self._drag = np.zeros(2)
+        self._located = np.zeros(number)
+        """Time of the last position of each UAV (s)."""
+        self._common, self._own = np.zeros(2), np.zeros((number, 2))
+        """Median of b (2,), and what each UAV has beside it (N, 2), low-passed."""
+        self._payload = _Payload(0.0, np.zeros(12), s)
+        self._commands: deque[_Command] = deque()
+
+    def start(self, time: float, payload: Array, x: Array, thrusts: Array, drag: Array) -> None:
+        """Begin at ``time`` (s).
+
+        Args:
+            time: s.
+            payload: position, velocity, Euler angles and body rates of the payload (12,).
+            x: state of the links (6, N, 2).
+            thrusts: of the UAVs (N,) (N).
+            drag: of the wind on each of them (2,) (N).
+        """
+        self._payload = _Payload(time, payload, self._settings)
+        self._times[:] = self._located[:] = time
+        self._common = np.median(x[OFF], axis=0)
+        self._own = x[OFF] - self._common
+        self._x[:] = x.transpose(1, 0, 2)
+        self._P[:] = np.diag(self._initial)
+        self._drag = drag
+        self._commands = deque([_Command(time, x[N], thrusts)])
+
+    def command(self, effective: float, tilts: Array, thrusts: Array) -> None:
+        """Take set-points that act from ``effective`` (s) on: tilts (N, 2), thrusts (N,) (N)."""
+        commands, oldest = self._commands, float(self._times.min())
+        self._share_errors(effective - commands[-1].time)
+        commands.append(_Command(effective, tilts, thrusts))
+        while len(commands) > 1 and commands[1].time <= oldest:
+            commands.popleft()
+
+    def _share_errors(self, step: float) -> None:
+        """Let UAVs without a position have what the others have in common: the wind, as it is now."""
+        s, errors = self._settings, self._x[:, OFF]
+        located = self._times.max() - self._located < s.position_gap
+        if not located.any():
+            return
+        share = 1.0 - math.exp(-step / s.error_time_constant)
+        self._common = self._common + share * (np.median(errors[located], axis=0) - self._common)
+        self._own[located] += share * (errors[located] - self._common - self._own[located])
+        errors[~located] = self._own[~located] + self._common
+
+    def add(self, measurement: Measurement) -> None:
+        """Take a ``measurement`` of the payload's unit, or of a UAV unless a later one was taken before."""
+        i, p = measurement.source, self._parameters
+        if i == PAYLOAD:
+            self._payload.add(measurement)
+            return
+        if not self._times[i] <= measurement.time <= self._commands[-1].time + _AHEAD_MAX:
+            return
+        self._times[i], self._x[i], self._P[i] = self._advanced(i, measurement.time)
+        if isinstance(measurement, Attitude):
+            if measurement.has_pose:
+                direction = -rotation_from_quaternion(measurement.pose)[:2, 2]
+                self._update(i, N, direction, self._direction_variance)
+            return
+        position, velocity = self._payload.attachment(p.p[i])
+        if measurement.has_pose or measurement.has_motion:
+            self._located[i] = measurement.time
+        if measurement.has_pose:
+            self._update(i, S, (position - measurement.pose)[:2] / p.l[i], self._variance[0] / p.l[i] ** 2)
+        if measurement.has_motion:
+            self._update(i, S_DOT, (velocity - measurement.motion)[:2] / p.l[i], self._variance[1] / p.l[i] ** 2)
+
+    def at(self, time: float) -> LinkStates:
+        """Return the states at ``time`` (s), by the set-points until then."""
+        states = [self._advanced(i, time)[1] for i in range(len(self._times))]
+        return LinkStates(np.array(states).transpose(1, 0, 2), self._command_at(time).thrusts, self._drag)
+
+    def _command_at(self, time: float) -> _Command:
+        at = self._commands[0]
+        for command in self._commands:
+            if command.time > time:
+                break
+            at = command
+        return at
+
+    def _advanced(self, i: int, time: float) -> tuple[float, Array, Array]:
+        """Return time, state (6, 2) and covariance (6, 6) of UAV ``i`` at ``time`` (s), or at its last one if later."""
+        now, x, P = float(self._times[i]), self._x[i], self._P[i]
+        while now < time:
+            command = self._command_at(now)
+            later = [c.time for c in self._commands if c.time > now]
+            step = min(time, now + _STEP_MAX, *later) - now
+            F, driven = self._transition(i, command, step)
+            x = F @ x + driven
+            P = F @ P @ F.T + step * np.diag(self._density)
+            now += step
+        return max(now, time), x, P
+
+    def _transition(self, i: int, command: _Command, step: float) -> tuple[Array, Array]:
+        """Return the transition (6, 6) over a ``step`` (s), and what set-points and drag add (6, 2)."""
+        f, inertia = command.thrusts[i], self._inertia[i]
+        A, driven = np.zeros((6, 6)), np.zeros((6, 2))
+        A[N, N_DOT] = A[N_DOT, N_ACC] = 1.0
+        A[N_ACC, N:] = self._loop
+        driven[N_ACC] = -self._loop[0] * command.tilts[i]
+        if f > self._weight[i]:  # below, a cradle may hold it
+            A[S, S_DOT] = 1.0
+            A[S_DOT, [S, OFF, N]] = -(f - self._weight[i]) / inertia, -f / inertia, -f / inertia
+            driven[S_DOT] = -self._drag / inertia
+        F, integral, term = np.eye(6), step * np.eye(6), step * np.eye(6)
+        for k in range(2, _TERMS + 1):  # term: A^(k-2) step^(k-1) / (k-1)!
+            F = F + A @ term
+            term = A @ term * (step / k)
+            integral = integral + term
+        return F, integral @ driven
+
+    def _update(self, i: int, row: int, value: Array, variance: float) -> None:
+        """Correct the state of UAV ``i`` by a measured ``value`` (2,) of a ``row`` of it."""
+        P = self._P[i]
+        total = P[row, row] + variance
+        gain = P[:, row] / total
+        bound = self._settings.innovation_max * np.sqrt(total)
+        self._x[i] += np.outer(gain, np.clip(value - self._x[i, row], -bound, bound))
+        self._P[i] = P - np.outer(gain, P[row])
