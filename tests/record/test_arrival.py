@@ -68,7 +68,12 @@ def fly(folder, mission, path, contacts=(), obstacles=(), reason="", completed=T
             write_state(log, state, int(k in contacts), obstacles)
     failsafes = SimpleNamespace(time=1.0 if reason else np.nan, interrupted=interrupted, alarms=AlarmLog())
     flown = SimpleNamespace(
-        completed=completed and not reason, landed=landed, takeoff_time=0.0, reason=reason, failsafes=failsafes
+        completed=completed and not reason,
+        landed=landed,
+        takeoff_time=0.0,
+        reason=reason,
+        failsafes=failsafes,
+        is_redirected=False,
     )
     return flight_result(folder, mission, SimpleNamespace(flight=flown), 9.0, 1.0)
 
@@ -259,7 +264,9 @@ def test_records_without_truth_are_judged_by_the_estimate(tmp_path):
     folder.mkdir()
     (folder / "estimate.csv").write_text("\n".join([*rows, ""]))
     failsafes = SimpleNamespace(time=np.nan, interrupted=False, alarms=AlarmLog())
-    flown = SimpleNamespace(completed=True, landed=True, takeoff_time=0.0, reason="", failsafes=failsafes)
+    flown = SimpleNamespace(
+        completed=True, landed=True, takeoff_time=0.0, reason="", failsafes=failsafes, is_redirected=False
+    )
     result = flight_result(folder, mission, SimpleNamespace(flight=flown), 9.0, 1.0)
     assert result.summary["source"] == "estimate" and result.reason.startswith("waypoint 1 missed by 0.50 m")
 

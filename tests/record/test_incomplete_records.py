@@ -174,7 +174,9 @@ def result(tmp_path, rows, incomplete, *, interrupted=False, landed=True):
     path.write_text(HOP)
     run = write_flight(tmp_path / "run", rows)
     failsafes = SimpleNamespace(time=1.0, interrupted=interrupted, alarms=AlarmLog())
-    flown = SimpleNamespace(completed=landed, landed=landed, takeoff_time=0.0, reason="", failsafes=failsafes)
+    flown = SimpleNamespace(
+        completed=landed, landed=landed, takeoff_time=0.0, reason="", failsafes=failsafes, is_redirected=False
+    )
     return flight_result(run, read_mission(path), SimpleNamespace(flight=flown), 9.0, 1.0, incomplete)
 
 

@@ -127,7 +127,9 @@ def test_landing_outcome_follows_from_truth(tmp_path, rows, landed, completed, o
     path.write_text(there + "\n[limits]\ntouchdown_speed = 0.9\n")
     run = write_flight(tmp_path / "run", rows)
     failsafes = SimpleNamespace(time=1.0, interrupted=False, alarms=AlarmLog())
-    flown = SimpleNamespace(completed=completed, landed=landed, takeoff_time=0.0, reason="", failsafes=failsafes)
+    flown = SimpleNamespace(
+        completed=completed, landed=landed, takeoff_time=0.0, reason="", failsafes=failsafes, is_redirected=False
+    )
     station = SimpleNamespace(flight=flown)
     summary = flight_result(run, read_mission(path), station, 9.0, 1.0).summary
     assert (summary["outcome"], summary["completed"]) == (outcome, outcome == "completed")
