@@ -149,7 +149,7 @@ class Flight:
         """True while the rotors spool up, until they lift a vehicle's own weight."""
         if self.phase is not Phase.SPOOL_UP or self._spool_up is None:
             return False
-        p, share = self.system.team.parameters, self._spool_up.share(self.time)
+        p, share = self.control.controller.parameters, self._spool_up.share(self.time)
         return bool(np.all(share * p.hover_thrust < p.m * p.g))
 
     # Failsafes
@@ -463,7 +463,7 @@ class Flight:
             RestTrajectory(estimate.x[layout.r_0], time),
             float(estimate.x[layout.Theta][2]),
             time,
-            self.system.team.parameters.m * self.system.team.parameters.g,
+            self.control.controller.parameters.m * self.system.team.parameters.g,
             self._settings.takeoff_landing,
         )
         self.control.estimator.setpoints.add(estimate.time, None)

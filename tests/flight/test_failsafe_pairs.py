@@ -24,6 +24,7 @@ from gcs.mavlink import px4
 from gcs.mission.read import read_mission
 from idc_controller.control.load_adaptation import LoadAdaptation
 from idc_controller.control.settings import ControllerSettings
+from idc_controller.estimation.grounded_links import LinkStates
 from idc_controller.guidance.progress import Guidance
 from idc_controller.model.linear import LinearModel
 from idc_controller.trajectory.trajectory import RestTrajectory
@@ -85,7 +86,16 @@ class TrackedFlight(Flight):
         load = LoadAdaptation(MODEL, ControllerSettings())
         controller = SimpleNamespace(parameters=PARAMETERS, guidance=Guidance(), layout=LAYOUT, load=load)
         control = SimpleNamespace(
-            estimator=estimator, controller=controller, estimate=self.on_trajectory, decide=self.decided, send=none
+            estimator=estimator,
+            controller=controller,
+            estimate=self.on_trajectory,
+            decide=self.decided,
+            send=none,
+            start_links=none,
+            add_to_links=none,
+            links=SimpleNamespace(
+                at=lambda time: LinkStates(np.zeros((6, 4, 2)), np.zeros(4), np.zeros((4, 2))), command=none
+            ),
         )
         super().__init__(MISSION, self.team, control, AlarmLog(), stack.obstacle_map(MISSION))
         self.failsafes.evaluate = none
