@@ -16,7 +16,7 @@ from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import CONTROLLED, IN_AIR, Phase
 from gcs.flight.plan_monitor import ImpactMonitor, PlanMonitor
 from gcs.flight.preflight import Preflight
-from gcs.flight.spool import Touchdown
+from gcs.flight.spool import Touchdown, lifted_mass
 from gcs.flight.team import Team
 from gcs.mission.model import Mission
 from idc_controller.arrays import Array
@@ -292,18 +292,6 @@ class Flight:
             return hover
         return self._touchdown.thrusts(time, hover, links)
 
-    def _lifted_mass(self, thrusts: Array, risen: float) -> float:
-        """Return the mass (kg) of a payload that has ``risen`` (m) although ``thrusts`` (N,) still grow.
-
-        From the lift-off, t ago, the thrust has grown by its rate times t, and lifted by rate / mass t^3 / 6.
-        """
-        p, lift = self.system.team.parameters, float(thrusts.sum())
-        rate = float(p.hover_thrust.sum()) / self._settings.takeoff_landing.spool_up_time
-        total = lift / p.g
-        for _ in range(5):
-            total = (lift - rate * (6.0 * risen * total / rate) ** (1.0 / 3.0)) / p.g
-        return total - float(p.m.sum())
-
     def _progress(self, time: float) -> tuple[float, Trajectory]:
         """Return the progress along the mission trajectory (s), and that."""
         assert self.mission_trajectory is not None
@@ -316,7 +304,7 @@ class Flight:
             position, settings = self._pad.position(time), self._settings.takeoff_landing
             risen = float(position[2] - estimate.x[self.control.controller.layout.r_0][2])
             if risen > settings.lifted:
-                self.control.controller.load.weigh(self._lifted_mass(thrusts, risen))
+                self.control.controller.load.weigh(lifted_mass(self.system.team.parameters, settings, thrusts, risen))
             if risen > settings.lifted or time - self.takeoff_time >= settings.spool_up_time:
                 self.mission_trajectory = MissionTrajectory(self.mission, position, time)
                 self.phase = Phase.CLIMB

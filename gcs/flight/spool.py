@@ -1,11 +1,24 @@
-"""The payload on the ground after the flight, while the thrust fades."""
+"""The payload on the ground, while the thrust grows and it lifts off, and after the flight, while it fades."""
 
 import numpy as np
 
 from gcs.config.flight_settings import TakeoffLandingSettings
 from idc_controller.arrays import Array
 from idc_controller.estimation.grounded_links import S_DOT, LinkStates, S
+from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.trajectory import Trajectory
+
+
+def lifted_mass(p: SystemParameters, settings: TakeoffLandingSettings, thrusts: Array, risen: float) -> float:
+    """Return the mass (kg) of a payload that has ``risen`` (m) while the ``thrusts`` (N,) (N) still grow.
+
+    Since the lift-off, t ago, the thrust has grown by its rate times t, and lifted by rate / mass t^3 / 6.
+    """
+    lift, rate = float(thrusts.sum()), float(p.hover_thrust.sum()) / settings.spool_up_time
+    total = lift / p.g
+    for _ in range(5):
+        total = (lift - rate * (6.0 * risen * total / rate) ** (1.0 / 3.0)) / p.g
+    return total - float(p.m.sum())
 
 
 class Touchdown:

@@ -12,7 +12,7 @@ from gcs.record.landing import is_set_down
 MOMENTS = [
     (0.0, 11.3),
     (4.0, 11.8),
-    *(pytest.param(4.0, at, marks=pytest.mark.long) for at in (10.8, 11.3, 12.1, 12.4)),
+    *(pytest.param(4.0, at, marks=pytest.mark.long) for at in (11.0, 11.3, 12.1, 12.4)),
 ]
 
 

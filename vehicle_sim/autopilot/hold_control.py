@@ -127,8 +127,10 @@ class HoldController:
         self._integral_x = 0.0
         self._integral_y = 0.0
         self._last_time = plan.start
-        self._supported: tuple[float, Vector] | None = None
-        """Since when the payload stands (s), and where the vehicle was then (m)."""
+        self._thrust = hover_thrust
+        """Last one commanded (N)."""
+        self._supported: tuple[float, Vector, float] | None = None
+        """Since when the payload stands (s), where the vehicle was then (m), and its thrust (N)."""
 
     def command(self, measured: Measurement, now: float, supported: bool = False) -> tuple[Quaternion, float]:
         """Attitude set-point (unit quaternion body to world) and thrust (N).
@@ -139,10 +141,10 @@ class HoldController:
         gains = self._settings
         x, y, z = measured.position
         if supported:
-            since, place = self._supported = self._supported or (now, measured.position)
+            since, place, thrust = self._supported = self._supported or (now, measured.position, self._thrust)
             position, velocity, acceleration = PlannedState(place, AT_REST, AT_REST)
             share = max(1.0 - (now - since) / gains.unload_time, 0.0)
-            thrust_max = carried = self._thrust_min + share * max(self._hover_thrust - self._thrust_min, 0.0)
+            thrust_max = carried = self._thrust_min + share * (thrust - self._thrust_min)
         else:
             self._supported = None
             position, velocity, acceleration = self.plan.at(now)
@@ -172,4 +174,5 @@ class HoldController:
         up = min(max(g - a_z, self._up_min), (1.0 + gains.vertical_max) * g)
         thrust = carried / g * math.sqrt(a_x * a_x + a_y * a_y + up * up)
         # Over a payload that stands the thrust is bounded, whatever the altitude says, which may drift.
-        return attitude_of_force(a_x, a_y, -up, self.plan.yaw), min(max(thrust, self._thrust_min), thrust_max)
+        self._thrust = min(max(thrust, self._thrust_min), thrust_max)
+        return attitude_of_force(a_x, a_y, -up, self.plan.yaw), self._thrust
