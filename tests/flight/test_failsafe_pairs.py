@@ -22,6 +22,7 @@ from gcs.flight.flight import Flight
 from gcs.flight.phase import IN_AIR, Phase
 from gcs.mavlink import px4
 from gcs.mission.read import read_mission
+from idc_controller.estimation.grounded_links import LinkStates
 from idc_controller.guidance.progress import Guidance
 from idc_controller.model.linear import StateLayout
 from idc_controller.trajectory.flatness import Load
@@ -29,6 +30,7 @@ from idc_controller.trajectory.trajectory import RestTrajectory
 
 MISSION = read_mission(MISSIONS / "short_leg.toml")
 PARAMETERS = MISSION.system.parameters()
+UPRIGHT = LinkStates(np.zeros((6, 4, 2)), PARAMETERS.hover_thrust, np.zeros(2))
 LAYOUT, STANDING = StateLayout(PARAMETERS.number_of_uavs), -PARAMETERS.payload.below
 STEP = 0.05
 DESCENT = 10.0
@@ -45,6 +47,8 @@ WALKED = [phase for phase in Phase if phase not in (*REFUSED, Phase.ENDED, Phase
 
 class ObedientTeam:
     """Vehicles that do at once what they are commanded, and land after AUTO.LAND."""
+
+    parameters = PARAMETERS
 
     answered, refusal, links, land_delay, hold = True, None, (), 5.0, Hold()
 
@@ -80,9 +84,11 @@ class TrackedFlight(Flight):
         )
         load = SimpleNamespace(estimate=Load(PARAMETERS.m_0, np.zeros(3)))
         controller = SimpleNamespace(parameters=PARAMETERS, guidance=Guidance(), layout=LAYOUT, load=load)
+        links = SimpleNamespace(at=lambda time: UPRIGHT, command=none)
         control = SimpleNamespace(
-            estimator=estimator, controller=controller, estimate=self.on_trajectory, decide=self.decided, send=none
-        )
+            estimator=estimator, controller=controller, estimate=self.on_trajectory, decide=self.decided, send=none,
+            links=links, start_links=none,
+        )  # fmt: skip
         super().__init__(MISSION, self.team, control, AlarmLog(), stack.obstacle_map(MISSION))
         self.failsafes.evaluate = none
         self._pad = RestTrajectory(np.array([0.0, 0.0, STANDING]), 0.0)
@@ -97,7 +103,10 @@ class TrackedFlight(Flight):
     @staticmethod
     def decided(estimate, trajectory, **options):
         flat = SimpleNamespace(x=np.zeros((1, LAYOUT.size)), payload=np.zeros((3, 1, 3)))
-        return SimpleNamespace(estimate=estimate, decision=SimpleNamespace(flat=flat, directions=None, thrusts=0.0))
+        decision = SimpleNamespace(
+            flat=flat, directions=None, thrusts=PARAMETERS.hover_thrust, u=np.zeros(LAYOUT.inputs)
+        )
+        return SimpleNamespace(estimate=estimate, decision=decision)
 
     def advance(self):
         self.team.time += STEP
