@@ -53,7 +53,7 @@ class PlainHold:
             share = max(1.0 - (now - self.stands_since) / GAINS.unload_time, 0.0)
             wanted, carried = (self.stands_at, np.zeros(3), np.zeros(3)), LEAST + share * (self.handed_over - LEAST)
         else:
-            self.stands_at, share = None, 1.0
+            self.stands_at = None
             wanted, carried = tuple(map(np.array, self.plan.at(now))), HOVER
         step = min(max(now - self.last, 0.0), GAINS.step_max)
         self.last = now
@@ -61,10 +61,12 @@ class PlainHold:
         integral = bounded(self.integral + GAINS.horizontal_ki * step * error[:2], self.integral_max)
         if not supported:
             self.integral = integral
-        level = wanted[2][:2] + GAINS.horizontal_kp * error[:2] + GAINS.horizontal_kd * drift[:2]
-        level = bounded(level + (share * self.integral if supported else integral), GAINS.horizontal_max * G)
         up = wanted[2][2] + GAINS.vertical_kp * error[2] + GAINS.vertical_kd * drift[2]
         up = np.clip(up, -GAINS.vertical_max * G, (1.0 - LEAST / HOVER) * G)
+        tension = np.clip((carried * (G - up) / G - LEAST) / (HOVER - LEAST), 0.0, 1.0)
+        integral = tension * (self.integral if supported else integral)
+        level = wanted[2][:2] + GAINS.horizontal_kp * error[:2] + GAINS.horizontal_kd * drift[:2]
+        level = bounded(level + integral, GAINS.horizontal_max * G)
         force = carried / G * np.array([*level, up - G])
         force = bounded(force, carried) if supported else force
         self.thrust = max(np.linalg.norm(force), LEAST)
