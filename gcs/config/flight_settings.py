@@ -41,8 +41,8 @@ class FailsafeSettings(SettingsTable):
         0.38, "", "share of the payload's weight; level drag on it at rest above which the flight is ended", gt=0.0
     )
     # rad; of a vehicle on board, by the force that it pulls aside with: less is compensated
-    attitude_error: float = 0.07
-    attitude_certainty: Share = 0.999  # probability, by the filter's covariance, that it is wrong by more than that
+    attitude_error: float = 0.09
+    attitude_certainty: Share = 0.99  # probability, by the filter's covariance, that it is wrong by more than that
     pad_attitude_error: float = 0.05  # rad; between axes of vehicle and payload on the pad: how level cradles are
     tilt_time: float = 0.5  # s; for which the tilt must exceed its limit
     descent_timeout: float = 15.0  # s; after the descent's planned end, with the payload still high

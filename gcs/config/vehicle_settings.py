@@ -85,7 +85,7 @@ class HoldSettings(SettingsTable):
     vertical_max: float = 0.35  # g; largest acceleration upwards; the least thrust bounds it downwards
     step_max: float = 0.1  # s; longest time between samples that the integral covers
     descent_ramp: float = 1.0  # s; until a descent has reached its speed
-    unload_time: float = 0.5  # s; in which a vehicle hands over a payload that stands on the ground
+    unload_time: float = 0.2  # s; in which a vehicle hands over a payload that stands: an unknown force pulls it aside
     land_speed: float = setting(0.5, "m/s", "MPC_LAND_SPEED: speed of the descent", ge=0.1, le=1.0)
     braking: BrakingSettings = derived(BrakingSettings())
     """Braking of a vehicle without a stop plan, as of the team: by ``guidance`` and ``motion``."""

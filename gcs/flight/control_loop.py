@@ -90,6 +90,7 @@ class ControlLoop:
 
     def add_to_links(self, measurement: Measurement) -> None:
         """Take a measurement over a payload on the ground, without channels that are isolated."""
+        measurement = self.estimator.health.usable(measurement)
         if isinstance(measurement, Position):
             isolated = self.estimator.health.isolation.isolated
             wrong = [Channel(measurement.source, Position, part) in isolated for part in (0, 1)]

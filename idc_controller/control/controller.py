@@ -84,6 +84,7 @@ class IntegratedDecisionController:
         self.load = LoadAdaptation(model, settings)
         self._ground_controller = GroundController(model, settings.period, settings.ground)
         self._hover = self.parameters.hover_thrust
+        self._least_lift = settings.least_lift * self.parameters.m * self.parameters.g
         self._tracked: PayloadTrajectory | None = None
         self._stopwatch = stopwatch
         self._times = settings.period * np.append(np.arange(tracker.horizon + 1), 0.5)
@@ -135,7 +136,7 @@ class IntegratedDecisionController:
         else:
             output = self.tracker.track(error, stages)
             tracked = self._stopwatch()
-            u = setpoints(output.delta_u, flat.u[-1], self._hover, self.settings.least_lift)
+            u = setpoints(output.delta_u, flat.u[-1], self._hover, self._least_lift)
             u = self.safety.correct(estimate.time, u, estimate)
         return Decision(
             time=estimate.time,

@@ -110,7 +110,7 @@ def fill_input_bounds(bounds: Array1, u: Array2, stages: Indices1, hover: Array1
 
 
 @kernel
-def setpoints(delta: Array1, u_reference: Array1, hover: Array1, least_lift: float) -> Array1:
+def setpoints(delta: Array1, u_reference: Array1, hover: Array1, least_lift: Array1) -> Array1:
     """Return tilts and thrusts (3 N,) of a reference plus ``delta`` in force components.
 
     The force points up whatever is commanded.
@@ -119,13 +119,13 @@ def setpoints(delta: Array1, u_reference: Array1, hover: Array1, least_lift: flo
         delta: F_xy / f_hover and -F_z less the reference's (3 N,).
         u_reference: tilts and thrusts of the reference (3 N,).
         hover: thrusts in hover (N,) (N).
-        least_lift: least upward force, as a share of the thrust in hover.
+        least_lift: least upward force of each UAV (N,) (N).
     """
     number, u = len(hover), np.empty(len(delta))
     for i in range(number):
         n_x, n_y, f = u_reference[2 * i], u_reference[2 * i + 1], u_reference[2 * number + i]
         north, east = f * n_x + hover[i] * delta[2 * i], f * n_y + hover[i] * delta[2 * i + 1]
-        upward = max(f * _cosine(n_x, n_y) + delta[2 * number + i], least_lift * hover[i])
+        upward = max(f * _cosine(n_x, n_y) + delta[2 * number + i], least_lift[i])
         thrust = math.sqrt(north * north + east * east + upward * upward)
         u[2 * i], u[2 * i + 1], u[2 * number + i] = north / thrust, east / thrust, thrust
     return u

@@ -112,4 +112,5 @@ class ControllerSettings(SettingsTable):
     upright_time_constant: float = 0.5  # s; with which links come upright over a payload on the ground
     position_error_limit: float = 0.3  # m; a position error of the payload is answered as if it were at most this
     velocity_error_limit: float = 0.6  # m/s; the same of its velocity
-    least_lift: Share = 0.05  # least upward force in a UAV's set-points, over its hover thrust: it points up always
+    # least upward force in a UAV's set-points, over its own weight: with less the link pushes, and the UAV falls over
+    least_lift: Share = 1.0

@@ -94,7 +94,7 @@ def test_wind_of_flights_with_a_lighter_load_is_as_strong_as_can_be_flown_with_i
         speeds[light] |= {round(float(np.hypot(*swept.fault.settings["velocity"][:2])), 1)
                           for swept in case.faults if swept.fault.kind == "wind"}  # fmt: skip
         assert "wind 4" not in case.severity or not light
-    assert speeds == {True: {3.0}, False: {4.0}}
+    assert speeds == {True: {2.5}, False: {4.0}}
 
 
 def test_grid_covers_every_two_values_of_any_two_factors(grid):
@@ -121,7 +121,7 @@ def test_faults_of_a_case_are_placed_by_its_factors(grid):
         assert len(steady) == (factors["wind"] > 0)
         for fault in steady:
             assert (fault.kind, fault.start, fault.settings["rise"]) == ("wind", 0.0, 0.0)
-            speed = 3.0 if "load lighter" in (factors["first"], factors["second"]) else factors["wind"]
+            speed = 2.5 if "load lighter" in (factors["first"], factors["second"]) else factors["wind"]
             assert np.hypot(*fault.settings["velocity"][:2]) == pytest.approx(speed, abs=0.01)
         starts = sorted({fault.start_offset for fault in faults if fault not in steady})
         assert (starts[0] >= 0.1) if factors["within"] else (starts[0] == 0.0)

@@ -20,6 +20,7 @@ from gcs.campaign.scenarios.judgement import least_separation
 from gcs.campaign.scenarios.passage import SHORT, SPARE, Passages
 from gcs.config import SystemConfig
 from gcs.flight.stack import reaction_time, speed_by_sight, tilted_formation
+from idc_controller.model.drag import drag_coefficients
 from idc_controller.model.linear import LinearModel
 from idc_controller.parameters import SystemParameters
 from idc_controller.perception.range_sensors import RayPattern
@@ -103,6 +104,23 @@ def campaigns() -> dict[str, Any]:
         name: sum(1 for _ in FaultFlights(read_campaign(ROOT / "missions" / f"{name}.toml")).plans(ROOT / "runs"))
         for name in ("sphere_faults", "detection", "obstacle_noise", "lost_ground", "lost_vehicle")
     }
+
+
+def drag() -> dict[str, Any]:
+    """Return the largest drag of the wind of the failsafe grid over the payload's weight, whole and lighter."""
+    grid = tomllib.loads((ROOT / "missions" / "failsafe_grid.toml").read_text(encoding="utf-8"))
+    light = next(fault for fault in grid["fault"] if fault["kind"] == "payload_mass")
+    p, wind, less = SystemConfig().parameters(), max(grid["pairs"]["wind"]), light["wind_max"]
+    diagonal = np.array([math.sqrt(0.5), math.sqrt(0.5), 0.0])
+
+    def share(speed: float, mass: float) -> float:
+        return float(drag_coefficients(p.payload.areas) @ diagonal) * speed**2 / (mass * p.g)
+
+    left = p.m_0 + light["change"]
+    return {
+        "mass": p.m_0, "lost": -light["change"], "wind": wind, "less_wind": less,
+        "whole": share(wind, p.m_0), "light": share(wind, left), "light_in_less": share(less, left),
+    }  # fmt: skip
 
 
 def missions() -> dict[str, Any]:

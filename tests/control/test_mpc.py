@@ -187,7 +187,11 @@ def test_force_components_are_inverted_exactly():
     u = np.concatenate([0.2 * rng.standard_normal(8), hover + rng.standard_normal(4)])
     target = np.concatenate([0.2 * rng.standard_normal(8), hover + rng.standard_normal(4)])
     delta = in_force_components(target) - in_force_components(u)
-    assert setpoints(delta, u, hover, 0.05) == pytest.approx(target)
+    assert setpoints(delta, u, hover, 0.05 * hover) == pytest.approx(target)
+    least = MODEL.parameters.m * MODEL.parameters.g
+    lowered = setpoints(delta - np.repeat([0.0, 1e3], [8, 4]), u, hover, least)
+    up = lowered[8:] * np.sqrt(1.0 - np.square(lowered[:8]).reshape(4, 2).sum(axis=1))
+    assert up == pytest.approx(least)  # links never push
     x = np.zeros(LAYOUT.size)
     x[LAYOUT.n], x[LAYOUT.f] = u[:8], u[8:]
     error = tracking_error(x, np.zeros(LAYOUT.size), hover, LAYOUT.n.start, np.inf, np.inf)

@@ -1,6 +1,7 @@
 """The control step as a whole: telemetry comes in, an estimate and a decision are made of it, set-points go out."""
 
 from itertools import count
+from types import SimpleNamespace
 
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
@@ -15,6 +16,7 @@ from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.setpoints import attitude_target
 from idc_controller.estimation.grounded_links import LinkStates
+from idc_controller.estimation.measurements import Position, SensorGroup
 from idc_controller.rotations import rotation_from_quaternion
 from idc_controller.safety.filter_protocol import NoObstacles
 from idc_controller.trajectory.stop_plan import Braking
@@ -148,6 +150,16 @@ def test_load_is_learnt_in_the_air_where_it_is_clear():
         for _ in range(20):
             loop.decide(estimated(uav_force=on_uavs), REST, **options)
         assert (loop.controller.load.estimate.uav_force[0, 0] > 0.01) == learns
+
+
+def test_links_on_the_ground_take_no_isolated_channel():
+    loop, taken = control_loop(), []
+    loop.links = SimpleNamespace(add=taken.append)
+    sample = Position(1.0, 2, np.ones(3), np.ones(3))
+    loop.add_to_links(sample)
+    loop.estimator.health.isolated_groups[SensorGroup(False, Position)] = (True, False)
+    loop.add_to_links(sample)
+    assert [(each.has_pose, each.has_motion) for each in taken] == [(True, True), (False, True)]
 
 
 def test_compute_times_of_a_step_go_to_their_parts():

@@ -200,6 +200,14 @@ def learnt(seconds, settings, **fields):
     return adaptation.estimate
 
 
+def test_payload_that_is_weighed_at_lift_off_is_the_load_of_the_reference():
+    adaptation, settings = LoadAdaptation(MODEL, ControllerSettings()), ControllerSettings()
+    adaptation.weigh(1.1)
+    assert adaptation.estimate.mass == 1.1
+    adaptation.weigh(100.0)
+    assert adaptation.estimate.mass == pytest.approx(settings.mass_share[1] * P.m_0)
+
+
 def test_load_follows_disturbance_force_of_each_vehicle_with_its_time_constant():
     settings = ControllerSettings()
     on_uavs = np.zeros((N, 3))

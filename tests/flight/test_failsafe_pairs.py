@@ -32,6 +32,7 @@ from idc_controller.trajectory.trajectory import RestTrajectory
 MISSION = read_mission(MISSIONS / "short_leg.toml")
 PARAMETERS = MISSION.system.parameters()
 MODEL = LinearModel(PARAMETERS)
+UPRIGHT = LinkStates(np.zeros((6, 4, 2)), PARAMETERS.hover_thrust, np.zeros(2))
 LAYOUT, STANDING = MODEL.layout, -PARAMETERS.payload.below
 STEP = 0.05
 DESCENT = 10.0
@@ -50,6 +51,8 @@ WALKED = [phase for phase in Phase if phase not in (*REFUSED, Phase.ENDED, Phase
 
 class ObedientTeam:
     """Vehicles that do at once what they are commanded, and land after AUTO.LAND."""
+
+    parameters = PARAMETERS
 
     answered, refusal, links, land_delay, hold = True, None, (), 5.0, Hold()
 
@@ -85,18 +88,11 @@ class TrackedFlight(Flight):
         )
         load = LoadAdaptation(MODEL, ControllerSettings())
         controller = SimpleNamespace(parameters=PARAMETERS, guidance=Guidance(), layout=LAYOUT, load=load)
+        links = SimpleNamespace(at=lambda time: UPRIGHT, command=none)
         control = SimpleNamespace(
-            estimator=estimator,
-            controller=controller,
-            estimate=self.on_trajectory,
-            decide=self.decided,
-            send=none,
-            start_links=none,
-            add_to_links=none,
-            links=SimpleNamespace(
-                at=lambda time: LinkStates(np.zeros((6, 4, 2)), np.zeros(4), np.zeros((4, 2))), command=none
-            ),
-        )
+            estimator=estimator, controller=controller, estimate=self.on_trajectory, decide=self.decided, send=none,
+            links=links, start_links=none,
+        )  # fmt: skip
         super().__init__(MISSION, self.team, control, AlarmLog(), stack.obstacle_map(MISSION))
         self.failsafes.evaluate = none
         self._pad = RestTrajectory(np.array([0.0, 0.0, STANDING]), 0.0)
@@ -111,7 +107,8 @@ class TrackedFlight(Flight):
     @staticmethod
     def decided(estimate, trajectory, **options):
         flat = SimpleNamespace(x=np.zeros((1, LAYOUT.size)), payload=np.zeros((3, 1, 3)))
-        return SimpleNamespace(estimate=estimate, decision=SimpleNamespace(flat=flat, **Setpoints.idle(4)._asdict()))
+        decision = SimpleNamespace(flat=flat, **Setpoints.idle(4)._asdict(), u=np.zeros(LAYOUT.inputs))
+        return SimpleNamespace(estimate=estimate, decision=decision)
 
     def advance(self):
         self.team.time += STEP

@@ -42,17 +42,18 @@ class PlainHold:
 
     def __init__(self, plan, integral_max):
         self.plan, self.integral_max = plan, integral_max
-        self.integral, self.last, self.stands_at, self.stands_since = np.zeros(2), plan.start, None, None
+        self.integral, self.last, self.stands_at = np.zeros(2), plan.start, None
+        self.stands_since, self.thrust, self.handed_over = 0.0, HOVER, HOVER
 
     def force(self, sample, now, supported):
         position, velocity = np.array(sample.position), np.array(sample.velocity)
         if supported:
             if self.stands_at is None:
-                self.stands_at, self.stands_since = position, now
+                self.stands_at, self.stands_since, self.handed_over = position, now, self.thrust
             share = max(1.0 - (now - self.stands_since) / GAINS.unload_time, 0.0)
-            wanted, carried = (self.stands_at, np.zeros(3), np.zeros(3)), LEAST + share * (HOVER - LEAST)
+            wanted, carried = (self.stands_at, np.zeros(3), np.zeros(3)), LEAST + share * (self.handed_over - LEAST)
         else:
-            self.stands_at, share = None, 1.0
+            self.stands_at = None
             wanted, carried = tuple(map(np.array, self.plan.at(now))), HOVER
         step = min(max(now - self.last, 0.0), GAINS.step_max)
         self.last = now
@@ -60,12 +61,16 @@ class PlainHold:
         integral = bounded(self.integral + GAINS.horizontal_ki * step * error[:2], self.integral_max)
         if not supported:
             self.integral = integral
-        level = wanted[2][:2] + GAINS.horizontal_kp * error[:2] + GAINS.horizontal_kd * drift[:2]
-        level = bounded(level + (share * self.integral if supported else integral), GAINS.horizontal_max * G)
         up = wanted[2][2] + GAINS.vertical_kp * error[2] + GAINS.vertical_kd * drift[2]
         up = np.clip(up, -GAINS.vertical_max * G, (1.0 - LEAST / HOVER) * G)
+        tension = np.clip((carried * (G - up) / G - LEAST) / (HOVER - LEAST), 0.0, 1.0)
+        integral = tension * (self.integral if supported else integral)
+        level = wanted[2][:2] + GAINS.horizontal_kp * error[:2] + GAINS.horizontal_kd * drift[:2]
+        level = bounded(level + integral, GAINS.horizontal_max * G)
         force = carried / G * np.array([*level, up - G])
-        return bounded(force, carried) if supported else force
+        force = bounded(force, carried) if supported else force
+        self.thrust = max(np.linalg.norm(force), LEAST)
+        return force
 
 
 @settings(deadline=None, derandomize=True, max_examples=20)
@@ -115,11 +120,11 @@ def test_vehicle_of_a_standing_payload_stays_where_it_was_then():
     controller = HoldController(STAY, HOVER, LEAST, G, GAINS)
     for k in range(20):
         before = controller.command(measured((2.0, -2.0, -6.0)), 0.1 * k)
-    beside = measured((9.0, 9.0, -3.0))
+    beside, handed_over = measured((9.0, 9.0, -3.0)), before[1]
     tilts = []
     for share in (1.0, 0.5, 0.25):
         command = controller.command(beside, 2.0 + (1.0 - share) * GAINS.unload_time, supported=True)
-        assert command[1] == pytest.approx(LEAST + share * (HOVER - LEAST))
+        assert command[1] == pytest.approx(LEAST + share * (handed_over - LEAST))
         tilts.append(force_of(command)[:2] / command[1] / share)
     assert np.linalg.norm(tilts[0]) > 0.01
     np.testing.assert_allclose(tilts, [tilts[0]] * 3, rtol=0.02, atol=1e-9)  # the angle, not its tangent

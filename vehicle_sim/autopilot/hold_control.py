@@ -127,8 +127,10 @@ class HoldController:
         self._integral_x = 0.0
         self._integral_y = 0.0
         self._last_time = plan.start
-        self._supported: tuple[float, Vector] | None = None
-        """Since when the payload stands (s), and where the vehicle was then (m)."""
+        self._thrust = hover_thrust
+        """Last one commanded (N)."""
+        self._supported: tuple[float, Vector, float] | None = None
+        """Since when the payload stands (s), where the vehicle was then (m), and its thrust (N)."""
 
     def command(self, measured: Measurement, now: float, supported: bool = False) -> tuple[Quaternion, float]:
         """Attitude set-point (unit quaternion body to world) and thrust (N).
@@ -139,14 +141,14 @@ class HoldController:
         gains = self._settings
         x, y, z = measured.position
         if supported:
-            since, place = self._supported = self._supported or (now, measured.position)
+            since, place, thrust = self._supported = self._supported or (now, measured.position, self._thrust)
             position, velocity, acceleration = PlannedState(place, AT_REST, AT_REST)
             share = max(1.0 - (now - since) / gains.unload_time, 0.0)
-            thrust_max = carried = self._thrust_min + share * max(self._hover_thrust - self._thrust_min, 0.0)
+            thrust_max = carried = self._thrust_min + share * (thrust - self._thrust_min)
         else:
             self._supported = None
             position, velocity, acceleration = self.plan.at(now)
-            share, carried, thrust_max = 1.0, self._hover_thrust, math.inf
+            carried, thrust_max = self._hover_thrust, math.inf
         v_x, v_y, v_z = measured.velocity
         error_x, error_y = position[0] - x, position[1] - y
         step = min(max(now - self._last_time, 0.0), gains.step_max)
@@ -157,19 +159,23 @@ class HoldController:
         if size > gains.integral_max:
             i_x, i_y = i_x * gains.integral_max / size, i_y * gains.integral_max / size
         if supported:
-            i_x, i_y = share * self._integral_x, share * self._integral_y
+            i_x, i_y = self._integral_x, self._integral_y
         else:
             self._integral_x, self._integral_y = i_x, i_y
-
-        a_x = acceleration[0] + gains.horizontal_kp * error_x + gains.horizontal_kd * (velocity[0] - v_x) + i_x
-        a_y = acceleration[1] + gains.horizontal_kp * error_y + gains.horizontal_kd * (velocity[1] - v_y) + i_y
         g = self._g
-        size = math.hypot(a_x, a_y)
-        if size > gains.horizontal_max * g:
-            a_x, a_y = a_x * gains.horizontal_max * g / size, a_y * gains.horizontal_max * g / size
         a_z = acceleration[2] + gains.vertical_kp * (position[2] - z) + gains.vertical_kd * (velocity[2] - v_z)
         # Downwards as far as the least thrust allows: of a load that was lost, the learned thrust still carries all.
         up = min(max(g - a_z, self._up_min), (1.0 + gains.vertical_max) * g)
+        # The integral holds a link that leans: it goes with the link's tension, which the ground takes over.
+        pulls = (carried * up / g - self._thrust_min) / max(self._hover_thrust - self._thrust_min, 1e-3)
+        i_x, i_y = min(max(pulls, 0.0), 1.0) * i_x, min(max(pulls, 0.0), 1.0) * i_y
+
+        a_x = acceleration[0] + gains.horizontal_kp * error_x + gains.horizontal_kd * (velocity[0] - v_x) + i_x
+        a_y = acceleration[1] + gains.horizontal_kp * error_y + gains.horizontal_kd * (velocity[1] - v_y) + i_y
+        size = math.hypot(a_x, a_y)
+        if size > gains.horizontal_max * g:
+            a_x, a_y = a_x * gains.horizontal_max * g / size, a_y * gains.horizontal_max * g / size
         thrust = carried / g * math.sqrt(a_x * a_x + a_y * a_y + up * up)
         # Over a payload that stands the thrust is bounded, whatever the altitude says, which may drift.
-        return attitude_of_force(a_x, a_y, -up, self.plan.yaw), min(max(thrust, self._thrust_min), thrust_max)
+        self._thrust = min(max(thrust, self._thrust_min), thrust_max)
+        return attitude_of_force(a_x, a_y, -up, self.plan.yaw), self._thrust
