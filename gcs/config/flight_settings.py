@@ -103,6 +103,7 @@ class TakeoffLandingSettings(SettingsTable):
     touch_steps: int = 4  # control steps in a row that are a touchdown
     touch_grace: float = 3.0  # s; after the descent's planned end, that are a touchdown as well
     touch_height: float = 1.0  # m; above which nothing is a touchdown
+    lift_off_lag: float = 0.05  # m; of a climb behind its plan on the ground, from which the thrust grows on
     clear_height: float = 0.3  # m; below which the ground may carry part of the load
     landing_overshoot: float = 0.15  # m; below the expected ground, where a descent aims
     slow_height: float = 1.0  # m; above the ground, below which a descent is slow

@@ -38,7 +38,12 @@ from gcs.mavlink.settings import MavlinkSettings
 from idc_controller.arrays import Array
 from idc_controller.control.settings import ControllerSettings, GroundControlSettings, MpcSettings, MpcTuning
 from idc_controller.errors import ParameterError
-from idc_controller.estimation.settings import EstimatorSettings, InnovationMonitorSettings, WindSettings
+from idc_controller.estimation.settings import (
+    EstimatorSettings,
+    InnovationMonitorSettings,
+    LiftOffSettings,
+    WindSettings,
+)
 from idc_controller.guidance.settings import (
     DetourSettings,
     NavigatorSettings,
@@ -60,11 +65,12 @@ _OTHER_FILES = {
 
 @dataclass(frozen=True, eq=False, repr=False)
 class EstimationConfig(SettingsTable):
-    """Estimator, wind estimate and the monitor of its innovations."""
+    """Estimator, wind estimate, the monitor of its innovations, and lift-off."""
 
     estimator: EstimatorSettings = field(default_factory=EstimatorSettings)
     wind: WindSettings = field(default_factory=WindSettings)
     innovation_monitor: InnovationMonitorSettings = field(default_factory=InnovationMonitorSettings)
+    lift_off: LiftOffSettings = field(default_factory=LiftOffSettings)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -19,7 +19,7 @@ from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import CONTROLLED, IN_AIR, Phase
 from gcs.flight.plan_monitor import ImpactMonitor, PlanMonitor
 from gcs.flight.preflight import Preflight
-from gcs.flight.spool import Touchdown
+from gcs.flight.spool import SpoolUp, Touchdown
 from gcs.flight.team import Team
 from gcs.mission.cargo import CargoState
 from gcs.mission.model import Mission
@@ -65,7 +65,8 @@ class Flight:
         """Of this flight, from the beginning of its climb until the rotors spool up for the next; else None."""
         self._home: Array | None = None
         self._pad: Trajectory | None = None
-        self._spool_up_start = math.nan
+        self._spool_up: SpoolUp | None = None
+        """None once the payload has lifted off."""
         self._touchdown: Touchdown | None = None
         self._sequence: CommandSequence | None = None
         self._ending: CommandSequence | None = None
@@ -116,6 +117,8 @@ class Flight:
         if self.phase in CONTROLLED:
             for taken in measurements:
                 self.system.plan.add(taken)
+                if self._spool_up is not None:
+                    self._spool_up.detector.add(taken)
             return [used for taken in measurements if (used := self.control.estimator.add(taken)) is not None]
         if self.phase in (Phase.CHECK, Phase.ARM):
             for taken in measurements:
@@ -280,10 +283,12 @@ class Flight:
         if self.landings:
             self._touchdown = self.mission_trajectory = None
             self.control.controller.start()
-        rest = Reference(self.control.controller.parameters, self._pad, self.control.controller.load.estimate)
-        self.control.estimator.start(time, rest.at(np.array([time])).x[0])
+        load = self.control.controller.load.estimate
+        rest = Reference(self.control.controller.parameters, self._pad, load)
+        self.control.estimator.start(time, rest.at(np.array([time])).x[0], load)
         self.control.estimator.setpoints.add(time, None)
-        self._spool_up_start = time
+        lift_off = self.mission.system.estimation.lift_off
+        self._spool_up = SpoolUp(self.control, time, self._settings.takeoff_landing, lift_off)
         if math.isnan(self.takeoff_time):
             self.takeoff_time, self._home = time, self._pad.position(time)
         self.phase = Phase.SPOOL_UP
@@ -295,17 +300,28 @@ class Flight:
     def _fly(
         self, time: float, effective: float, leaves: Array, now: float
     ) -> tuple[Setpoints | None, StepRecord | None]:
+        if self._spool_up is not None and self._spool_up.has_lifted_off(time):
+            self._spool_up = None
+            if self.phase is Phase.SPOOL_UP:
+                self._begin_climb(time)
         trajectory = self._followed()
         if (touchdown := self._touchdown) is not None:
             self.control.estimator.hold_payload(time, touchdown.trajectory.position(time), touchdown.yaw)
         estimate = self.control.estimate(effective, trajectory)
         in_air = self.phase in IN_AIR
+        if in_air and self._spool_up is not None:
+            self._spool_up.continue_in_climb(self.system.plan.below_plan(estimate.x[2]))
         if in_air and self._evaluate(Check.ESTIMATE, time, now, estimate):
             return None, None
         self.last_record = record = self.control.decide(
             estimate, trajectory, on_ground=not in_air, learn_load=self.system.payload.is_clear(estimate)
         )
         share = self._thrust_share(time, estimate)
+        setpoints = Setpoints(record.decision.directions, record.decision.thrusts * share)
+        if self._spool_up is not None:
+            self._spool_up.sent(effective, setpoints, leaves, in_air=in_air)
+            if self.system.payload.is_clear(estimate):
+                self._spool_up = None
         if in_air:
             self.control.send(record, effective, leaves, self.system.team.hold)
             places = self.control.estimator.measurement_model.vehicles(time, record.decision.flat.x[0])
@@ -313,7 +329,13 @@ class Flight:
             planned_down = float(record.decision.flat.payload[0, 0, 2])
             self.system.plan.compare(estimate.time, places.values[:, :3], contradicted, planned_down)
         self._advance(time, estimate, share)
-        return Setpoints(record.decision.directions, record.decision.thrusts * share), record
+        return setpoints, record
+
+    def _begin_climb(self, time: float) -> None:
+        assert self._pad is not None
+        position, legs = self._pad.position(time), self.legs.flight()
+        self.mission_trajectory = MissionTrajectory(self.mission, position, time, legs, self._home)
+        self.phase = Phase.CLIMB
 
     def _followed(self) -> Trajectory:
         if self._touchdown is not None:
@@ -325,8 +347,8 @@ class Flight:
 
     def _thrust_share(self, time: float, estimate: Estimate) -> float:
         """Return the share of the thrust that carries payload and vehicles."""
-        if self.phase is Phase.SPOOL_UP:
-            return min((time - self._spool_up_start) / self._settings.takeoff_landing.spool_up_time, 1.0)
+        if self.phase is Phase.SPOOL_UP and self._spool_up is not None:
+            return self._spool_up.share(time)
         if self._touchdown is None:
             return 1.0
         layout, ahead = self.control.controller.layout, self._settings.takeoff_landing.lean_time
@@ -342,10 +364,7 @@ class Flight:
         """Go on to the next phase where this one is over."""
         if self.phase is Phase.SPOOL_UP:
             if share >= 1.0:
-                assert self._pad is not None
-                position, legs = self._pad.position(time), self.legs.flight()
-                self.mission_trajectory = MissionTrajectory(self.mission, position, time, legs, self._home)
-                self.phase = Phase.CLIMB
+                self._begin_climb(time)
         elif self.phase is Phase.SPOOL_DOWN:
             if share <= 0.0:
                 self._disarm(time)

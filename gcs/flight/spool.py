@@ -1,7 +1,69 @@
-"""The payload on the ground after the flight, while the thrust fades."""
+"""The payload on the ground before and after the flight, while the thrust grows or fades."""
+
+import numpy as np
 
 from gcs.config.flight_settings import TakeoffLandingSettings
+from gcs.flight.control_loop import ControlLoop, Setpoints
+from idc_controller.arrays import Array
+from idc_controller.estimation.lift_off import LiftOffDetector
+from idc_controller.estimation.settings import LiftOffSettings
 from idc_controller.trajectory.trajectory import Trajectory
+
+
+class SpoolUp:
+    """The thrust of a take-off, from idle until a payload of unknown mass has lifted off.
+
+    It grows to the expected weight, where the climb begins; earlier if the payload has lifted off. While that stays on
+    the ground although the climb has begun, the thrust grows on. At lift-off the weight follows from the thrust.
+    """
+
+    def __init__(
+        self, control: ControlLoop, time: float, settings: TakeoffLandingSettings, lift_off: LiftOffSettings
+    ) -> None:
+        """``time`` (s) at which the rotors begin to spool up."""
+        self._control, self._start, self._settings, self._lift_off = control, time, settings, lift_off
+        self.detector = LiftOffDetector(control.controller.parameters, lift_off)
+        self._expected = control.controller.load.payload_mass
+        self._on_ground: list[tuple[float, Array, Array]] = []
+        """Set-points before the climb: when they act (s), tilts and thrusts (3 N,), when they leave (N,) (s)."""
+
+    def share(self, time: float) -> float:
+        """Return the share of the thrust that carries the expected payload at ``time`` (s)."""
+        return min((time - self._start) / self._settings.spool_up_time, 1.0)
+
+    def continue_in_climb(self, lag: float) -> None:
+        """Let the thrust grow on at its rate where the payload is behind the climb by a ``lag`` (m). Once a step."""
+        if not lag > self._settings.lift_off_lag:
+            return
+        load = self._control.controller.load
+        rate = (load.parameters.m_0 + float(load.parameters.m.sum())) / self._settings.spool_up_time
+        load.take_mass(load.estimate.mass + rate * load.settings.period)
+
+    def sent(self, effective: float, setpoints: Setpoints, leaves: Array, *, in_air: bool) -> None:
+        """Take set-points that act from ``effective`` (s) on; those in the air are in the estimator's history, too."""
+        directions, thrusts = setpoints
+        self.detector.command(effective, -float(directions[:, 2] @ thrusts))
+        if not in_air:
+            self._on_ground.append((effective, np.concatenate([directions[:, :2].ravel(), thrusts]), leaves))
+
+    def has_lifted_off(self, time: float) -> bool:
+        """Return whether the payload has lifted off by ``time`` (s); if so, its mass is taken. Once a control step.
+
+        A mass that differs by less than its uncertainty is left to the estimator, which has followed the motion.
+        """
+        mass = self.detector.mass(time)
+        if mass is None:
+            return False
+        s = self._lift_off
+        if abs(mass - self._expected) > s.significance * s.mass:
+            load, estimator = self._control.controller.load, self._control.estimator
+            load.take_mass(mass)
+            thrust, speed = self.detector.motion(estimator.time, load.estimate.mass)
+            hover = load.parameters.hover_thrust
+            estimator.lift_off(hover * (thrust / hover.sum()), speed, load.estimate)
+            for setpoints in self._on_ground:
+                estimator.setpoints.add(*setpoints)
+        return True
 
 
 class Touchdown:

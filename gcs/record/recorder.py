@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 REFERENCE_INTERVAL = 0.02  # s, the grid of truth.csv
 _SD_DIGITS = 7
+_MASS_DIGITS = 4
 _SD_ORDER = np.array([*range(3), *range(6, 9), *range(3, 6), *range(9, 15)])
 """Of the columns, in the estimator's order: position, velocity, attitude, rates, force."""
 
@@ -79,7 +80,7 @@ class FlightRecorder(ExitStack):
         attitude = quaternion_from_euler(*x[6:9]).tolist()
         self._estimate.write_numbers(
             [float(estimate.time), *x[0:3], *attitude, *x[3:6], *x[9:12], *estimate.force.tolist(),
-             *_standard_deviations(estimate).tolist()]
+             *_standard_deviations(estimate).tolist(), round(flight.control.controller.load.payload_mass, _MASS_DIGITS)]
         )  # fmt: skip
         control = flight.control
         self._innovations.record(control.estimator, estimate, time)

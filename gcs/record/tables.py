@@ -30,7 +30,8 @@ ESTIMATE_SD_COLUMNS = tuple(
         *_DISTURBANCE_COLUMNS,
     )
 )  # fmt: skip
-ESTIMATE_COLUMNS = ("time_s", *PAYLOAD_COLUMNS, *_DISTURBANCE_COLUMNS, *ESTIMATE_SD_COLUMNS)
+PAYLOAD_MASS_COLUMN = "payload_mass_kg"
+ESTIMATE_COLUMNS = ("time_s", *PAYLOAD_COLUMNS, *_DISTURBANCE_COLUMNS, *ESTIMATE_SD_COLUMNS, PAYLOAD_MASS_COLUMN)
 # Innovation tests of each channel of each source, the largest ratio since the row before.
 INNOVATION_COLUMNS = ("time_s", "source", "channel", "test_ratio", "state")
 # The planned path (kind plan) and the stop plan of that moment (stop), by the stage of the safety filter's horizon.
@@ -92,7 +93,7 @@ COLUMNS: Mapping[str, tuple[str, ...]] = {
     FORCES: force_columns(0), INNOVATIONS: INNOVATION_COLUMNS, HORIZON: HORIZON_COLUMNS,
 }  # fmt: skip
 """Columns that a file has; ``truth.csv`` also those of the UAVs, ``forces.csv`` those of the links."""
-LATER_COLUMNS = frozenset(ESTIMATE_SD_COLUMNS)
+LATER_COLUMNS = frozenset((*ESTIMATE_SD_COLUMNS, PAYLOAD_MASS_COLUMN))
 """Those that a file of an earlier version may lack; they are read as nan then."""
 TEXT_COLUMNS = frozenset(
     ("name", "shape", "kind", "mode", "phase", "source", "channel", "state", "code", "severity", "text", "action")

@@ -36,6 +36,13 @@ class LoadAdaptation:
         load = self.estimate
         return load.mass + float(load.force[2]) / self.parameters.g
 
+    def take_mass(self, mass: float) -> None:
+        """Take a ``mass`` (kg) of the payload at once, within its limits; the level forces stay."""
+        least, most = self.settings.mass_share
+        mass = min(max(mass, least * self.parameters.m_0), most * self.parameters.m_0)
+        load = self.estimate
+        self.estimate = Load(mass, load.force * np.array([1.0, 1.0, 0.0]), load.uav_force, load.air)
+
     def release(self) -> None:
         """Let links that lean against the wind come upright: the ground holds the payload, whose weight stays."""
         share = self.settings.period / self.settings.upright_time_constant

@@ -34,7 +34,7 @@ from idc_controller.estimation.setpoint_history import Confirmation, SetpointHis
 from idc_controller.estimation.settings import EstimatorSettings
 from idc_controller.model.linear import LinearModel
 from idc_controller.rotations import quaternion_from_euler
-from idc_controller.trajectory.flatness import Reference
+from idc_controller.trajectory.flatness import Load, Reference
 
 
 class Snapshot(NamedTuple):
@@ -131,19 +131,41 @@ class Estimator:
         self.measurement_model = MeasurementModel(model, noise, s.measurement)
         self.health = SensorHealth(number_of_uavs, noise, s)
         self._process = ProcessModel(model, s.process)
+        self._nominal_mass = model.parameters.m_0
         self._filter = ErrorStateFilter(self._process)
         self._update = MeasurementUpdate(self.measurement_model, self.health, s)
         self._replay = ReplayBuffer(s.history, s.simultaneous)
         self.setpoints = SetpointHistory(number_of_uavs, s.setpoints)
         """Set-points in force; their confirmations go by :meth:`confirm_setpoint`."""
 
-    def start(self, time: float, x: Array) -> None:
-        """Begin at ``time`` (s) from the state ``x`` (12 + 11 N,) of a team on the ground."""
+    def start(self, time: float, x: Array, load: Load | None = None) -> None:
+        """Begin at ``time`` (s) from the state ``x`` (12 + 11 N,) of a team on the ground, under ``load``."""
         self.setpoints.clear()
         self.health.start()
+        self._begin(time, np.concatenate([x, self._process.forces_of(load)]))
+
+    def _begin(self, time: float, x: Array) -> None:
         P = self._process.initial_covariance(self.settings.initial)
-        full = np.concatenate([x, np.zeros(self._process.size - len(x))])
-        self._replay.start(Snapshot(time, full, P, self.health.snapshot()))
+        self._replay.start(Snapshot(time, x, P, self.health.snapshot()))
+
+    def lift_off(self, thrusts: Array, speed: float, load: Load) -> None:
+        """Begin anew at the last measurement, with what the ground has hidden until the payload lifted off.
+
+        The model is that of the mass of ``load`` from now on.
+
+        Args:
+            thrusts: of the UAVs (N,) (N).
+            speed: upward (m/s).
+            load: payload's mass; its forces on payload and UAVs are those that the filter has.
+        """
+        parameters = self._process.model.parameters.with_payload_mass(load.mass)
+        self._process = process = ProcessModel(LinearModel(parameters), self.settings.process)
+        self._filter = ErrorStateFilter(process)
+        last = self._replay.snapshots[-1]
+        x = last.x.copy()
+        x[process.layout.f], x[process.layout.v_0.start + 2] = thrusts, -speed
+        x[process.force.start + 2], x[process.mass] = load.force[2], load.mass - process.model.parameters.m_0
+        self._begin(last.time, x)
 
     @property
     def time(self) -> float:
@@ -238,9 +260,10 @@ class Estimator:
             moment = next(moments, None)
         ahead = Outlook(process, interval, k, kf.P, health.adaptation.process_scale)
         x, n = kf.state_ahead(interval, k), process.layout.size
+        mass_excess = float(x[process.mass]) + process.model.parameters.m_0 - self._nominal_mass
         on_uavs = np.zeros((process.layout.number_of_uavs, 3))
         on_uavs[:, :2] = x[process.uav_force].reshape(-1, 2)
         return Estimate(
-            time, x[:n], x[process.force], on_uavs, float(x[process.mass]),
+            time, x[:n], x[process.force], on_uavs, mass_excess,
             ahead.force_covariance(), ahead.covariance, tuple(innovations), ahead.payload_variances,
         )  # fmt: skip

@@ -10,6 +10,7 @@ from idc_controller.estimation.kalman_filter import SparseRows, Transition
 from idc_controller.estimation.propagation_kernels import add_variances
 from idc_controller.estimation.settings import CovarianceResetSettings, InitialCovarianceSettings, ProcessNoiseSettings
 from idc_controller.model.linear import LinearModel
+from idc_controller.trajectory.flatness import Load
 
 _TERMS = 24
 """Of the series; within :attr:`IntegratedNoise.duration_max` the next one is 2^24 / 25! of the first, 1e-18."""
@@ -51,6 +52,14 @@ class ProcessModel:
         self._noise = self._noise_of(densities)
         self.transition = lru_cache(maxsize=256)(self._discretised)
         self.noise = lru_cache(maxsize=256)(self._integrated_noise)
+
+    def forces_of(self, load: Load | None) -> Array:
+        """Return constant forces and mass excess (3 + 2 N + 1,) of ``load``; zero without one."""
+        N, forces = self.layout.number_of_uavs, np.zeros(self.size - self.layout.size)
+        if load is not None:
+            forces[:3], forces[-1] = load.force, load.mass - self.model.parameters.m_0
+            forces[3:-1] = np.broadcast_to(load.uav_force, (N, 3))[:, :2].ravel()
+        return forces
 
     def force_of_mass(self, acceleration: Array) -> Array:
         """Return the force (..., 3) of one kilogram of excess of mass at an ``acceleration`` of the payload (..., 3).

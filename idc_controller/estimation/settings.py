@@ -154,6 +154,18 @@ class SetpointHistorySettings(SampledSettings):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class LiftOffSettings(SettingsTable):
+    """Detection of lift-off, and the uncertainty of the mass by it."""
+
+    speed: float = 0.05  # m/s; upward speed of what has lifted off, in the median of all sources
+    sigmas: float = 6.0  # standard deviations of that median on the ground, if they are more
+    steps: int = 2  # control steps in a row with such a speed
+    age_max: float = 0.2  # s; of a velocity that is used
+    mass: float = 0.06  # kg; standard deviation of the mass by thrust and momentum
+    significance: float = 3.0  # of these, by which another mass than the expected one is taken
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class WindSettings(SettingsTable):
     """Memory, uncertainties and extent of the wind estimate."""
 
