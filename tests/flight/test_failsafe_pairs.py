@@ -22,14 +22,16 @@ from gcs.flight.flight import Flight
 from gcs.flight.phase import IN_AIR, Phase
 from gcs.mavlink import px4
 from gcs.mission.read import read_mission
+from idc_controller.control.load_adaptation import LoadAdaptation
+from idc_controller.control.settings import ControllerSettings
 from idc_controller.guidance.progress import Guidance
-from idc_controller.model.linear import StateLayout
-from idc_controller.trajectory.flatness import Load
+from idc_controller.model.linear import LinearModel
 from idc_controller.trajectory.trajectory import RestTrajectory
 
 MISSION = read_mission(MISSIONS / "short_leg.toml")
 PARAMETERS = MISSION.system.parameters()
-LAYOUT, STANDING = StateLayout(PARAMETERS.number_of_uavs), -PARAMETERS.payload.below
+MODEL = LinearModel(PARAMETERS)
+LAYOUT, STANDING = MODEL.layout, -PARAMETERS.payload.below
 STEP = 0.05
 DESCENT = 10.0
 """Time (s) from AUTO.LAND until the stub's vehicles have landed, and disarmed."""
@@ -80,7 +82,7 @@ class TrackedFlight(Flight):
         estimator = SimpleNamespace(
             hold_payload=none, setpoints=setpoints, health=health, measurement_model=model, start=none
         )
-        load = SimpleNamespace(estimate=Load(PARAMETERS.m_0, np.zeros(3)))
+        load = LoadAdaptation(MODEL, ControllerSettings())
         controller = SimpleNamespace(parameters=PARAMETERS, guidance=Guidance(), layout=LAYOUT, load=load)
         control = SimpleNamespace(
             estimator=estimator, controller=controller, estimate=self.on_trajectory, decide=self.decided, send=none
@@ -99,7 +101,7 @@ class TrackedFlight(Flight):
     @staticmethod
     def decided(estimate, trajectory, **options):
         flat = SimpleNamespace(x=np.zeros((1, LAYOUT.size)), payload=np.zeros((3, 1, 3)))
-        return SimpleNamespace(estimate=estimate, decision=SimpleNamespace(flat=flat, directions=None, thrusts=0.0))
+        return SimpleNamespace(estimate=estimate, decision=SimpleNamespace(flat=flat, **Setpoints.idle(4)._asdict()))
 
     def advance(self):
         self.team.time += STEP

@@ -142,14 +142,15 @@ def test_columns_follow_the_contract() -> None:
     assert ",".join(HORIZON_COLUMNS) == "time_s,kind,step,x_m,y_m,z_m"
 
 
-def test_estimate_without_standard_deviations_is_read_with_nan(tmp_path) -> None:
-    columns = [name for name in ESTIMATE_COLUMNS if not name.endswith("_sd")]
+def test_estimate_without_standard_deviations_and_mass_is_read_with_nan(tmp_path) -> None:
+    columns = [name for name in ESTIMATE_COLUMNS if not name.endswith("_sd") and name != "payload_mass_kg"]
     with TableWriter(tmp_path / ESTIMATE, columns) as table:
         table.write(range(len(columns)), range(len(columns)))
     table = read_table(tmp_path / ESTIMATE)
     assert table.dtype.names == ESTIMATE_COLUMNS and len(table) == 2
     assert [table[name][1] for name in columns] == [*range(len(columns))]
-    assert np.isnan(table["payload_x_m_sd"]).all() and np.isnan(table["payload_yaw_rad_sd"]).all()
+    later = "payload_x_m_sd", "payload_yaw_rad_sd", "payload_mass_kg"
+    assert all(np.isnan(table[name]).all() for name in later)
     header = (tmp_path / ESTIMATE).read_text().replace("payload_vx_mps", "payload_v_mps")
     (tmp_path / ESTIMATE).write_text(header)
     with pytest.raises(UnusableInput, match=r"estimate\.csv, line 1: column payload_vx_mps is missing"):

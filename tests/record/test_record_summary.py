@@ -176,7 +176,7 @@ def test_tilt_counts_between_take_off_and_landing(folder):
 def test_summary_uses_estimate_without_truth(folder):
     with TableWriter(folder / "estimate.csv", ESTIMATE_COLUMNS) as table:
         for k in range(101):
-            table.write([k / 10.0, k / 10.0, 0.1, -5.0, *LEVEL, *[0.0] * 6, 0.0, 0.0, 0.3, *[0.01] * 15])
+            table.write([k / 10.0, k / 10.0, 0.1, -5.0, *LEVEL, *[0.0] * 6, 0.0, 0.0, 0.3, *[0.01] * 15, 3.1])
     write_reference(folder)
     summary = summarise(folder, limits={"settle": 1.0})
     assert summary["source"] == "estimate"

@@ -152,7 +152,7 @@ def test_clearance_is_that_of_the_time_in_the_air(folder):
 def test_run_without_truth_is_shown_by_the_estimate(folder):
     with TableWriter(folder / "estimate.csv", ESTIMATE_COLUMNS) as table:
         for k in range(20):
-            table.write([k / 20.0, k / 20.0, 0.0, -5.0, 1, 0, 0, 0, *[0.0] * 6, 0.1, 0.2, 0.3, *[0.01] * 15])
+            table.write([k / 20.0, k / 20.0, 0.0, -5.0, 1, 0, 0, 0, *[0.0] * 6, 0.1, 0.2, 0.3, *[0.01] * 15, 3.1])
     (decoded,) = page_of(write_report(read_run(folder)))
     assert decoded.header["meta"]["source"] == "estimate"
     assert "truth.payload.position" not in decoded.header["channels"]
