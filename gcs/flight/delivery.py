@@ -21,7 +21,7 @@ class DeliveryAlarm(ScopedAlarm):
 
 
 class Delivery:
-    """The detector of these."""
+    """The detector of these, beside those of :func:`gcs.flight.detectors.detectors`."""
 
     def __init__(self, flight: Flight) -> None:
         self._flight, self._settings = flight, flight.mission.system.flight.monitor

@@ -11,7 +11,6 @@ import numpy as np
 from gcs.config.flight_settings import MonitorSettings
 from gcs.flight.alarms import Severity
 from gcs.flight.clock_movement import ClockMovement
-from gcs.flight.delivery import Delivery
 from gcs.flight.flight import Flight
 from gcs.flight.guarantee import Guarantee
 from gcs.flight.monitor_step import Detector, MonitorStep, Scope, ScopedAlarm
@@ -326,7 +325,6 @@ def detectors(flight: Flight, settings: MonitorSettings) -> tuple[Detector, ...]
         _MessageEvents(settings, number_of_uavs),
         _obstacles,
         Guarantee(flight),
-        Delivery(flight),
     )
 
 

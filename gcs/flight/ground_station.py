@@ -14,6 +14,7 @@ from gcs.flight.alarms import Alarm
 from gcs.flight.compute_times import ComputeTimes, Part
 from gcs.flight.condition import Trigger
 from gcs.flight.control_loop import Setpoints, StepRecord
+from gcs.flight.delivery import Delivery
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.flight import Flight
 from gcs.flight.monitor import FlightMonitor
@@ -74,7 +75,8 @@ class GroundStation:
         self.flight = flight
         self._recorder = recorder
         self._id_check = SystemIdCheck(len(flight.system.team.links), flight.mission.system.mavlink.id_check)
-        self._monitor = FlightMonitor(flight, self._id_check, flight.failsafes.alarms, settings.monitor)
+        alarms, others = flight.failsafes.alarms, [Delivery(flight)]
+        self._monitor = FlightMonitor(flight, self._id_check, alarms, settings.monitor, others)
         self._codec = Codec(GROUND_SYSTEM, GROUND_COMPONENT)
         self._clock = TeamClock(timing)
         self.router = TelemetryRouter(self._codec, flight, self._clock, self._id_check, timing)

@@ -1,13 +1,14 @@
 """Flight monitor: runs the detectors once a control step; what they find goes to the alarm log."""
 
 import math
+from collections.abc import Sequence
 
 from gcs.config.flight_settings import DEFAULTS, MonitorSettings
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.control_loop import StepRecord
 from gcs.flight.detectors import detectors
 from gcs.flight.flight import Flight
-from gcs.flight.monitor_step import MonitorStep
+from gcs.flight.monitor_step import Detector, MonitorStep
 from gcs.flight.phase import IN_AIR
 from gcs.mavlink.id_check import SystemIdCheck
 
@@ -16,10 +17,16 @@ class FlightMonitor:
     """Call :meth:`step` once a control step, after the flight's own; times are the team's (s)."""
 
     def __init__(
-        self, flight: Flight, id_check: SystemIdCheck, log: AlarmLog, settings: MonitorSettings = DEFAULTS.monitor
+        self,
+        flight: Flight,
+        id_check: SystemIdCheck,
+        log: AlarmLog,
+        settings: MonitorSettings = DEFAULTS.monitor,
+        others: Sequence[Detector] = (),
     ) -> None:
+        """``others``: detectors that run after those of :func:`.detectors.detectors`."""
         self._flight, self._id_check, self._log, self._settings = flight, id_check, log, settings
-        self._detectors = detectors(flight, settings)
+        self._detectors = (*detectors(flight, settings), *others)
         self._names = [*(f"vehicle {link.system_id}" for link in flight.system.team.links), "payload"]
         self._tilts: list[float] = []
         self._steady_from = -math.inf

@@ -94,4 +94,5 @@ class Touchdown:
             if lean > s.upright_lean and time - self._begin < s.upright_timeout:
                 return np.asarray(standing)
             self._upright_at = time
-        return np.maximum(standing - (time - self._upright_at) / s.spool_down_time * hover, 0.0)
+        faded = (time - self._upright_at) / s.spool_down_time * np.maximum(hover, self._own)
+        return np.maximum(standing - faded, 0.0)
