@@ -5,7 +5,7 @@ import pytest
 
 from gcs.config import SystemConfig
 from gcs.config.flight_settings import DEFAULTS
-from gcs.flight.spool import Touchdown, lifted_mass
+from gcs.flight.spool import Touchdown
 from idc_controller.estimation.grounded_links import LinkStates, S
 from idc_controller.trajectory.trajectory import RestTrajectory
 
@@ -52,16 +52,3 @@ def test_spool_down_waits_for_links_until_its_timeout():
     spool = touchdown()
     assert thrusts(spool, SETTINGS.upright_timeout + 0.05, 1.0) == pytest.approx(STANDING)
     assert not thrusts(spool, SETTINGS.upright_timeout + SETTINGS.spool_down_time + 0.05, 1.0).any()
-
-
-@pytest.mark.parametrize("mass", [0.5, 1.1, 3.1])
-def test_mass_of_a_payload_is_weighed_by_the_thrust_with_which_it_rises(mass):
-    total = mass + PARAMETERS.m.sum()
-    rate = PARAMETERS.hover_thrust.sum() / SETTINGS.spool_up_time
-    lift, speed, risen, step = total * PARAMETERS.g, 0.0, 0.0, 1e-3
-    while risen < SETTINGS.lifted:
-        lift += rate * step
-        speed += (lift / total - PARAMETERS.g) * step
-        risen += speed * step
-    assert lifted_mass(PARAMETERS, SETTINGS, np.full(4, lift / 4.0), risen) == pytest.approx(mass, abs=0.02)
-    assert lift / PARAMETERS.g - PARAMETERS.m.sum() > mass + 0.3
