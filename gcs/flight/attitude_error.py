@@ -50,7 +50,8 @@ def attitude_misaligned(system: System, moment: Moment) -> Trigger | None:
 
     Taken off with a wrong attitude it would fall aside with its link, until that is compensated.
     """
-    if moment.phase not in (Phase.CHECK, Phase.ARM, Phase.SPOOL_UP):
+    on_pad = moment.phase in (Phase.CHECK, Phase.ARM, Phase.SPOOL_UP) and not system.preflight.landed
+    if not on_pad:  # where it has landed, links lean as they came to rest
         return None
     limit = system.settings.pad_attitude_error
     errors = system.preflight.attitude_errors()

@@ -141,7 +141,8 @@ def _obstructed(system: System, moment: Moment) -> Trigger | None:
     if not (preflight.has_positions and preflight.is_settled(moment.time)):
         return None
     found = _obstruction(system, moment.time, preflight.payload, 0.0)
-    return None if found is None else Trigger(f"{preflight.place}, {found.lacking(0.0)}", source=found.name)
+    place = "where the payload stands" if preflight.landed else "on the pad"
+    return None if found is None else Trigger(f"{place}, {found.lacking(0.0)}", source=found.name)
 
 
 def _obstruction(system: System, time: float, place: Array, within: float) -> Obstruction | None:

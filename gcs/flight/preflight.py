@@ -37,8 +37,8 @@ class Preflight:
         """Whole seconds for which the first vehicle had been up when the ground began: team time counts them."""
         self.missing = ""
         """Vehicles that have not connected, else all that those which have lack of what a flight needs; empty: none."""
-        self.place = "on the pad"
-        """Where the payload stands, in words."""
+        self.landed = False
+        """Whether the payload stands where it has landed, no more on the pad."""
         self._stamps: list[tuple[float, float] | None] = []
         """Of each vehicle when all had connected: the newest stamp, and its arrival (s)."""
         self._newest: dict[int, float] = {}
@@ -64,8 +64,7 @@ class Preflight:
 
     def restart(self, *, landed: bool) -> None:
         """Begin anew: on the pad, or where the payload has ``landed``."""
-        if landed:
-            self.place = "where the payload stands"
+        self.landed = landed
         self.connect_start = self.check_start = math.nan
         self._newest.clear()
         self._intervals.clear()
