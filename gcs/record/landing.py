@@ -48,6 +48,8 @@ def landing_figures(run: RunData) -> dict[str, Any] | None:
         down = float(max(run.payload_velocity[near, 2].max(), 0.0)) if near.any() else None
         after = np.flatnonzero(touching[airborne[-1] :])
         touchdown = int(airborne[-1] + after[0]) if len(after) else len(run.time)
+    if (landings := stops(run)) is not None:  # not where it lifts off again, and the wind takes it along
+        fastest, down = (max(each[name] or 0.0 for each in landings) for name in ("speed_mps", "sinking_mps"))
     landed = bool(len(airborne)) and touchdown < len(run.time)
     stopped = bool(np.all(run.thrust[-1] < _STOPPED))
     return {
