@@ -10,6 +10,7 @@ from flying import AIRFRAME
 from onboard import step_alone
 from scipy.linalg import expm
 
+from gcs.config.vehicle_settings import HoldSettings
 from gcs.mavlink import px4
 from idc_controller.rotations import euler_from_quaternion, quaternion_from_euler
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
@@ -217,7 +218,7 @@ def test_setpoint_loss_of_vehicle_supported_by_its_link_holds_before_disarming()
     assert flight.pilot.state.actuation.target[2] == pytest.approx(0.8 * flight.hover, rel=0.1)
     flight.run(4.0)
     assert flight.pilot.armed
-    flight.run(2.0)  # it would sink, and cannot: found out as after any descent
+    flight.run(2.0 + HoldSettings.unload_time)  # it would sink, and cannot: found out as after any descent
     assert not flight.pilot.armed and not flight.pilot.state.land.in_air
 
 
