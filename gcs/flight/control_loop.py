@@ -77,10 +77,20 @@ class ControlLoop:
         self.compute_times.lap(Part.ESTIMATION)
         return estimate
 
-    def decide(self, estimate: Estimate, trajectory: Trajectory, *, on_ground: bool, learn_load: bool) -> StepRecord:
+    def decide(
+        self,
+        estimate: Estimate,
+        trajectory: Trajectory,
+        *,
+        on_ground: bool,
+        learn_load: bool,
+        touched_down: bool = True,
+    ) -> StepRecord:
         """Return the decision on an ``estimate`` of this step."""
         self.compute_times.lap(Part.MONITORING)
-        decision = self.controller.decide(estimate, trajectory, on_ground=on_ground, learn_load=learn_load)
+        decision = self.controller.decide(
+            estimate, trajectory, on_ground=on_ground, learn_load=learn_load, touched_down=touched_down
+        )
         self.compute_times.lap(Part.CONTROL)
         self.compute_times.shift(decision.compute_time.planner, Part.CONTROL, Part.PLANNING)
         return StepRecord(estimate, decision)

@@ -19,7 +19,7 @@ from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import CONTROLLED, IN_AIR, Phase
 from gcs.flight.plan_monitor import ImpactMonitor, PlanMonitor
 from gcs.flight.preflight import Preflight
-from gcs.flight.spool import SpoolUp, Touchdown
+from gcs.flight.spool import SpoolUp, Touchdown, shares_of
 from gcs.flight.team import Team
 from gcs.mission.cargo import CargoState
 from gcs.mission.model import Mission
@@ -314,7 +314,11 @@ class Flight:
         if in_air and self._evaluate(Check.ESTIMATE, time, now, estimate):
             return None, None
         self.last_record = record = self.control.decide(
-            estimate, trajectory, on_ground=not in_air, learn_load=self.system.payload.is_clear(estimate)
+            estimate,
+            trajectory,
+            on_ground=not in_air,
+            learn_load=self.system.payload.is_clear(estimate),
+            touched_down=self._touchdown is not None,
         )
         share = self._thrust_share(time, estimate)
         setpoints = Setpoints(record.decision.directions, record.decision.thrusts * share)
@@ -381,6 +385,7 @@ class Flight:
             float(estimate.x[layout.Theta][2]),
             time,
             self._settings.takeoff_landing,
+            shares_of(self.control.controller.parameters, self.cargo.mass, self._settings.takeoff_landing),
         )
         self.control.estimator.setpoints.add(estimate.time, None)
         self.landings += 1

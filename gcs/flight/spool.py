@@ -1,5 +1,7 @@
 """The payload on the ground before and after the flight, while the thrust grows or fades."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from gcs.config.flight_settings import TakeoffLandingSettings
@@ -7,6 +9,7 @@ from gcs.flight.control_loop import ControlLoop, Setpoints
 from idc_controller.arrays import Array
 from idc_controller.estimation.lift_off import LiftOffDetector
 from idc_controller.estimation.settings import LiftOffSettings
+from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.trajectory import Trajectory
 
 
@@ -66,14 +69,29 @@ class SpoolUp:
         return True
 
 
+class Shares(NamedTuple):
+    """Shares of the hover thrust with the payload on the ground, links upright or leaning."""
+
+    standing: float
+    leaning: float
+
+
 class Touchdown:
     """The payload at rest where it touched down, and the spool-down, which waits until leaning links are upright."""
 
-    def __init__(self, trajectory: Trajectory, yaw: float, time: float, settings: TakeoffLandingSettings) -> None:
-        """``trajectory``: rest where it touched down at ``time`` (s); ``yaw`` in rad."""
+    def __init__(
+        self,
+        trajectory: Trajectory,
+        yaw: float,
+        time: float,
+        settings: TakeoffLandingSettings,
+        shares: Shares | None = None,
+    ) -> None:
+        """``trajectory``: rest since the touchdown at ``time`` (s); ``yaw`` in rad; ``shares``: None: the settings'."""
         self.trajectory, self.yaw = trajectory, yaw
         self._since, self._settings = time, settings
-        self._leaning, self._least = True, settings.standing_share
+        self._shares = shares or Shares(settings.standing_share, settings.leaning_share)
+        self._leaning, self._least = True, self._shares.standing
 
     def share(self, time: float, lean: float) -> float:
         """Return the share of the hover thrust at ``time`` (s).
@@ -83,10 +101,24 @@ class Touchdown:
         s = self._settings
         if self._leaning:
             share = max(1.0 - (time - self._since) / s.spool_down_time, self._least)
-            if share > s.standing_share:
+            if share > self._shares.standing:
                 return share
             if lean > s.upright_lean and time - self._since < s.upright_timeout:
-                self._least = s.leaning_share  # with more of it a payload slides in wind
+                self._least = self._shares.leaning  # with more of it a payload slides in wind
                 return share
             self._leaning, self._since = False, time - (1.0 - share) * s.spool_down_time
         return max(1.0 - (time - self._since) / s.spool_down_time, 0.0)
+
+
+def shares_of(parameters: SystemParameters, mass: float, settings: TakeoffLandingSettings) -> Shares:
+    """Return the shares for a payload of ``mass`` (kg): those of the settings are for the stated one.
+
+    With the vehicles' weight w, the hover thrust h, and h' of the stated payload: the share s leaves the links s h' - w
+    to stand upright by. Standing, that is the same share of their pull in flight, h - w; leaning, the same force up to
+    that, as the vehicles' motion depends on no payload.
+    """
+    stated, own = float(parameters.hover_thrust.sum()), float(parameters.m.sum()) * parameters.g
+    hover = stated + (mass - parameters.m_0) * parameters.g
+    standing, leaning = settings.standing_share, settings.leaning_share
+    standing += (1.0 - standing) * own * (stated - hover) / (hover * (stated - own))
+    return Shares(standing, min(leaning + leaning * (stated - hover) / hover, standing))

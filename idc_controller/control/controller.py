@@ -92,7 +92,8 @@ class IntegratedDecisionController:
         return Reference(self.parameters, self._tracked or mission, self.load.estimate)
 
     def start(self) -> None:
-        """Begin a flight from rest on the ground: the load stays as it was learnt."""
+        """Begin a flight from rest on the ground: the load stays as it was learnt, and the wind."""
+        self.load.start()
         self.guidance.start()
         self.safety.start()
         self._tracked = None
@@ -104,10 +105,12 @@ class IntegratedDecisionController:
         *,
         on_ground: bool = False,
         learn_load: bool = True,
+        touched_down: bool = True,
     ) -> Decision:
         """Set-points that act from ``estimate.time`` on for one period.
 
-        ``on_ground``: the payload is on the ground. ``learn_load`` is off while the ground may carry part of it.
+        ``on_ground``: the payload is on the ground; ``touched_down``: after a flight, not before it. ``learn_load`` is
+        off while the ground may carry part of it.
         """
         begin = self._stopwatch()
         trajectory: PayloadTrajectory = mission
@@ -116,7 +119,8 @@ class IntegratedDecisionController:
         self._tracked = None if on_ground else trajectory
         planned = self._stopwatch()
         if on_ground:
-            self.load.release()
+            if touched_down:
+                self.load.release()
         elif learn_load:
             self.load.learn(estimate)
         reference = Reference(self.parameters, trajectory, self.load.estimate)
