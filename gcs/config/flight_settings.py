@@ -95,7 +95,7 @@ class TakeoffLandingSettings(SettingsTable):
     leaning_share: Share = 0.6  # the same while links lean: with more of it a payload slides in wind
     upright_lean: float = 0.05  # sine of a link's tilt that stays upright without thrust
     lean_time: float = 1.0  # s; a link that moves on at its rate must be upright for so long, too
-    upright_timeout: float = 5.0  # s; for links to come upright before the thrust fades
+    upright_timeout: float = 12.0  # s; for links to come upright before the thrust fades: they swing in up to 7 s
     touch_depth: float = 0.06  # m; of the reference below a payload that is on the ground
     touch_speed: float = 0.05  # m/s; vertical, below which it is at rest
     touch_height_near: float = 0.08  # m; a pad's height, where a bouncing payload is on the ground
