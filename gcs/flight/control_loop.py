@@ -105,11 +105,19 @@ class ControlLoop:
         return estimate
 
     def decide(
-        self, estimate: Estimate, trajectory: Trajectory, *, links: LinkStates | None = None, learn_load: bool
+        self,
+        estimate: Estimate,
+        trajectory: Trajectory,
+        *,
+        links: LinkStates | None = None,
+        learn_load: bool,
+        touched_down: bool = True,
     ) -> StepRecord:
         """Return the decision on an ``estimate`` of this step; ``links``: over a payload on the ground."""
         self.compute_times.lap(Part.MONITORING)
-        decision = self.controller.decide(estimate, trajectory, links=links, learn_load=learn_load)
+        decision = self.controller.decide(
+            estimate, trajectory, links=links, learn_load=learn_load, touched_down=touched_down
+        )
         self.compute_times.lap(Part.CONTROL)
         self.compute_times.shift(decision.compute_time.planner, Part.CONTROL, Part.PLANNING)
         return StepRecord(estimate, decision)

@@ -394,7 +394,11 @@ class Flight:
             return None, None
         links = None if in_air else self.control.links.at(estimate.time)
         self.last_record = record = self.control.decide(
-            estimate, trajectory, links=links, learn_load=self.system.payload.is_clear(estimate)
+            estimate,
+            trajectory,
+            links=links,
+            learn_load=self.system.payload.is_clear(estimate),
+            touched_down=self._touchdown is not None,
         )
         thrusts = self._thrusts(time, record.decision.thrusts, links)
         if links is not None:

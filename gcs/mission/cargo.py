@@ -13,14 +13,14 @@ class CargoState:
 
     def __init__(self, system: SystemConfig) -> None:
         self._masses = {cargo.gripper: cargo.mass for cargo in system.cargo}
-        self.held = frozenset(cargo.gripper for cargo in system.cargo if cargo.loaded)
+        self.held = self._stated = frozenset(cargo.gripper for cargo in system.cargo if cargo.loaded)
         """Grippers that hold their cargo."""
-        self._container = system.payload.mass - self._mass_of(self.held)
+        self._stated_mass = system.payload.mass
 
     @property
     def mass(self) -> float:
         """Mass of the payload with what is held (kg)."""
-        return self._container + self._mass_of(self.held)
+        return self._mass_with(self.held)
 
     def mass_of(self, leg: Gripper) -> float:
         """Return the mass of all that a ``leg`` releases or grabs now (kg)."""
@@ -48,11 +48,14 @@ class CargoState:
         numbers = sorted(moved)
 
         def error(failed: tuple[int, ...]) -> float:
-            return abs(mass - self._container - self._mass_of(self.held ^ frozenset(failed)))
+            return abs(mass - self._mass_with(self.held ^ frozenset(failed)))
 
         if error(()) <= bound * self.mass:
             return ()
         return min(chain.from_iterable(combinations(numbers, n) for n in range(len(numbers) + 1)), key=error)
+
+    def _mass_with(self, held: frozenset[int]) -> float:
+        return self._stated_mass + (self._mass_of(held - self._stated) - self._mass_of(self._stated - held))
 
     def _mass_of(self, grippers: Iterable[int]) -> float:
         return sum(self._masses[gripper] for gripper in sorted(grippers))

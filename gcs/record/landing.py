@@ -44,12 +44,12 @@ def landing_figures(run: RunData) -> dict[str, Any] | None:
         near = touching.copy()
         near[:-1] |= touching[1:]
         near[: airborne[0]] = False
+        for row in _stands(run, touching)[:-1]:  # a lift-off is no landing
+            near[row : row + int(np.argmax(height[row:] > _AIRBORNE))] = False
         fastest = float(speed[near].max()) if near.any() else None
         down = float(max(run.payload_velocity[near, 2].max(), 0.0)) if near.any() else None
         after = np.flatnonzero(touching[airborne[-1] :])
         touchdown = int(airborne[-1] + after[0]) if len(after) else len(run.time)
-    if (landings := stops(run)) is not None:  # not where it lifts off again, and the wind takes it along
-        fastest, down = (max(each[name] or 0.0 for each in landings) for name in ("speed_mps", "sinking_mps"))
     landed = bool(len(airborne)) and touchdown < len(run.time)
     stopped = bool(np.all(run.thrust[-1] < _STOPPED))
     return {
@@ -74,12 +74,10 @@ def stops(run: RunData) -> list[dict[str, float | None]] | None:
     rotation = rotation_from_quaternion(run.payload_quaternion)
     height = _height(run, rotation)
     touching, airborne = height <= _TOUCHING, height > _AIRBORNE
-    stands = touching & np.all(run.thrust < _STOPPED, axis=1)
-    begins = np.flatnonzero(stands & ~np.append(False, stands[:-1]))
     speed = np.linalg.norm(run.payload_velocity, axis=1)
     found: list[dict[str, float | None]] = []
     since = 0
-    for row in begins.tolist():
+    for row in _stands(run, touching):
         flown = since + np.flatnonzero(airborne[since:row])
         since = row
         if not len(flown):
@@ -100,6 +98,12 @@ def stops(run: RunData) -> list[dict[str, float | None]] | None:
             }
         )
     return found if len(found) > 1 else None
+
+
+def _stands(run: RunData, touching: Mask) -> list[int]:
+    """Return the rows from which on the payload stands with all rotors stopped."""
+    stands = touching & np.all(run.thrust < _STOPPED, axis=1)
+    return [int(row) for row in np.flatnonzero(stands & ~np.append(False, stands[:-1]))]
 
 
 def is_set_down(landing: Mapping[str, Any]) -> bool:

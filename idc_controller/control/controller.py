@@ -94,7 +94,8 @@ class IntegratedDecisionController:
         return Reference(self.parameters, self._tracked or mission, self.load.estimate)
 
     def start(self) -> None:
-        """Begin a flight from rest on the ground: the load stays as it was learnt."""
+        """Begin a flight from rest on the ground: the load stays as it was learnt, and the wind."""
+        self.load.start()
         self.guidance.start()
         self.safety.start()
         self._tracked = None
@@ -106,11 +107,12 @@ class IntegratedDecisionController:
         *,
         links: LinkStates | None = None,
         learn_load: bool = True,
+        touched_down: bool = True,
     ) -> Decision:
         """Set-points that act from ``estimate.time`` on for one period.
 
-        ``links``: those over a payload on the ground; None: it is in the air. ``learn_load`` is off while the ground
-        may carry part of it.
+        ``links``: those over a payload on the ground; None: it is in the air. ``touched_down``: it is there after a
+        flight, not before it. ``learn_load`` is off while the ground may carry part of it.
         """
         begin, on_ground = self._stopwatch(), links is not None
         trajectory: PayloadTrajectory = mission
@@ -119,7 +121,8 @@ class IntegratedDecisionController:
         self._tracked = None if on_ground else trajectory
         planned = self._stopwatch()
         if on_ground:
-            self.load.release()
+            if touched_down:
+                self.load.release()
         elif learn_load:
             self.load.learn(estimate)
         reference = Reference(self.parameters, trajectory, self.load.estimate)

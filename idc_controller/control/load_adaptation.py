@@ -43,6 +43,12 @@ class LoadAdaptation:
         load = self.estimate
         self.estimate = Load(mass, load.force * np.array([1.0, 1.0, 0.0]), load.uav_force, load.air)
 
+    def start(self) -> None:
+        """Lean against the wind of the flight before: at lift-off nothing else holds the payload any more."""
+        air, load = self.wind.air, self.estimate
+        _, uav_drag = _drag(air, np.zeros(3))
+        self.estimate = Load(load.mass, load.force * np.array([0.0, 0.0, 1.0]), load.uav_force - uav_drag, air)
+
     def release(self) -> None:
         """Let links that lean against the wind come upright: the ground holds the payload, whose weight stays."""
         share = self.settings.period / self.settings.upright_time_constant
