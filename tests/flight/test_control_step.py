@@ -202,9 +202,9 @@ def learnt(seconds, settings, **fields):
 
 def test_payload_that_is_weighed_at_lift_off_is_the_load_of_the_reference():
     adaptation, settings = LoadAdaptation(MODEL, ControllerSettings()), ControllerSettings()
-    adaptation.weigh(1.1)
+    adaptation.take_mass(1.1)
     assert adaptation.estimate.mass == 1.1
-    adaptation.weigh(100.0)
+    adaptation.take_mass(100.0)
     assert adaptation.estimate.mass == pytest.approx(settings.mass_share[1] * P.m_0)
 
 
