@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from gcs.config import MotionConfig
 from gcs.mission.model import Lissajous, Mission
 from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Speed, TakeOff
 from idc_controller.arrays import Array
@@ -42,6 +43,10 @@ class MissionTrajectory:
         self._waypoints: WaypointTrajectory | None = None
         self.landing = ""
         """Source of the landing, once it is read."""
+
+    def set_motion(self, motion: MotionConfig) -> None:
+        """Have other limits of what is planned from now on: after the next :meth:`go_on`, and of the landing."""
+        self._motion = motion
 
     def reference(self, times: Array) -> tuple[Array, Array]:
         """Return position and velocity (K, 3) at ``times``: a descent ends on the ground, not below it."""

@@ -22,6 +22,7 @@ from gcs.serve.plan_file import label, mission_of
 from gcs.serve.session import TeamSession
 
 if TYPE_CHECKING:
+    from gcs.config import SystemConfig
     from gcs.mavlink.services.parameter_table import ParameterTable
 
 TAKEOFF_ALTITUDE = px4.PARAM_TAKEOFF_ALTITUDE
@@ -44,6 +45,11 @@ class TeamAircraft:
         self._reached: list[str] = []
         """Sources of the waypoints that were reported."""
         self._finished = False
+
+    def configure(self, system: SystemConfig) -> None:
+        """Fly with other settings from now on: see :meth:`.TeamSession.configure`."""
+        self.base = replace(self.base, system=system)
+        self.session.configure(system)
 
     # Arming
 
@@ -241,7 +247,9 @@ class TeamAircraft:
         """Have another mission, of which ``current`` is flown first; ``on_reached`` is called with each item done."""
         session = self.session
         if session.flies_mission and session.in_air:
-            return rejected_for_now("Mission refused: the one before is being flown; hold first")
+            if not session.is_paused:
+                return rejected_for_now("Mission refused: the one before is being flown; hold first")
+            session.forget_mission()
         self._plans[PlanType.MISSION] = tuple(items)
         labels = [label(item, number) for number, item in enumerate(items)]
         self._take(mission_of(self._plans, self.base) if items else None, labels)
@@ -269,9 +277,10 @@ class TeamAircraft:
     def take_fence(self, items: Sequence[MissionItem]) -> None:
         """Have another fence from the next arming on."""
         self._plans[PlanType.FENCE] = tuple(items)
-        self.session.world = mission_of(self._plans, self.base)
-        if self.session.mission is not None:
-            self.session.mission = self.session.world
+        session = self.session
+        session.world = mission_of(self._plans, self.base)
+        if session.mission is not None:
+            session.mission = replace(session.mission, boundary=session.world.boundary, excluded=session.world.excluded)
 
     def take_rally_points(self, items: Sequence[MissionItem]) -> None:
         """Have other rally points, places where a return may land, from now on."""
@@ -298,8 +307,12 @@ class TeamAircraft:
     @property
     def current_item(self) -> int:
         """The item of the mission that is flown to, or will be."""
-        done = self._index_of(self._reached[-1]) + 1 if self._reached else self._index_of(self.session.first)
-        return min(max(done, 0), max(len(self._labels) - 1, 0))
+        session, labels = self.session, self._labels
+        source = (session.next_source if session.flies_mission else "") or session.first
+        if source in labels and not self._finished:
+            return labels.index(source)
+        last = self._reached[-1] if self._reached and (self._finished or session.flies_mission) else None
+        return min(labels.index(last) + 1, len(labels) - 1) if last in labels else 0
 
     @property
     def mission_finished(self) -> bool:
@@ -310,9 +323,6 @@ class TeamAircraft:
     def mission_active(self) -> bool:
         """Whether the mode that flies the mission is active."""
         return self.session.mode == px4.MODE_MISSION and self.session.is_armed
-
-    def _index_of(self, source: str) -> int:
-        return self._labels.index(source) if source in self._labels else 0
 
     def report_reached(self) -> None:
         """Report the items that were reached since the last call."""

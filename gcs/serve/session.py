@@ -5,16 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from gcs.flight.alarms import Alarm
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.flight import Flight
 from gcs.flight.ground_station import GroundStation
 from gcs.flight.phase import CONTROLLED, IN_AIR, Phase
+from gcs.flight.reconfiguration import reconfigure
 from gcs.mavlink import px4
 from gcs.mission.model import Lissajous, Mission
-from gcs.mission.route import Climb, FlyTo, HoldForever, Land, Leg, Place, Position, Route, Stay
+from gcs.mission.route import Climb, FlyTo, HoldForever, Land, Leg, Place, Position, Route, Speed, Stay
+
+if TYPE_CHECKING:
+    from gcs.config import SystemConfig
 
 PREFLIGHT_DISARM = 10.0
 """s for which armed vehicles wait for a take-off, as COM_DISARM_PRFLT of PX4."""
@@ -186,13 +190,16 @@ class TeamSession:
             self._flies_mission = True
             self._set_mode(px4.MODE_MISSION)
             return
+        resumed = self._flies_mission and self.in_air and self.is_paused and not anew
+        if resumed and self._wanted_speed > self._planned_speed:
+            resumed, self.first = False, self.next_source or self.first
         if self.first:
             route = route.beginning_at(self.first)
         if self.speed is not None:
             route = replace(route, speed=self.speed)
         if not self.in_air:
             self._begin(self.mission, route)
-        elif self._flies_mission and self.is_paused and not anew:
+        elif resumed:
             self._limit_speed()
         else:
             self._passed = self.passed
@@ -222,13 +229,24 @@ class TeamSession:
     def change_speed(self, speed: float) -> None:
         """Fly with another ``speed`` (m/s) from now on; faster than planned, from the next rest on."""
         self.speed = speed
-        if not self.may_order or self.is_paused:
-            return
-        if self._flies_mission and speed > self._planned_speed:
-            self.first = self.next_source or ""
-            self.fly_mission(anew=True)
-        else:
-            self._limit_speed()
+        self._have_speed()
+
+    def configure(self, system: SystemConfig) -> None:
+        """Have other settings: at once, or from the next legs on, or from the next arming; as the flight takes them."""
+        before, cruise = self.world.system.motion.speed, system.motion.speed
+        self.world = replace(self.world, system=system)
+        if self.mission is not None:
+            route = self.mission.reference
+            if isinstance(route, Route) and route.speed == before:  # it names none
+                route = replace(route, speed=cruise)
+            self.mission = replace(self.mission, system=system, reference=route)
+        reconfigure(self.flight, system)
+        if self.speed is None and cruise != before:
+            self._have_speed()
+
+    def forget_mission(self) -> None:
+        """Leave a paused mission for good, and stay where it was paused."""
+        self._flies_mission, self._passed = False, []
 
     def disarm(self) -> None:
         """Stop the rotors on the ground."""
@@ -257,8 +275,34 @@ class TeamSession:
         self.flight.system.guidance.speed_limit = math.inf
         self.changes += 1
 
+    def _have_speed(self) -> None:
+        """Fly with the wanted speed: a slower one at once, a faster one, or beside the mission's own, on new legs."""
+        if not self.may_order or self.is_paused:
+            return
+        if self._flies_mission and self.next_source and self._needs_new_legs:
+            self.first = self.next_source
+            self.fly_mission(anew=True)
+        else:
+            self._limit_speed()
+
+    @property
+    def _needs_new_legs(self) -> bool:
+        assert self.mission is not None
+        if not isinstance(self.mission.reference, Route):
+            return False
+        has_own = any(isinstance(step, Speed) for step in self.mission.reference.steps)
+        return self._wanted_speed > self._planned_speed or (self.speed is None and has_own)
+
+    @property
+    def _wanted_speed(self) -> float:
+        """The speed that was ordered, else the mission's, else that of what is flown without one (m/s)."""
+        if self.speed is None and self._flies_mission and self.mission is not None:
+            return self.mission.reference.speed if isinstance(self.mission.reference, Route) else math.inf
+        return self._cruise_speed()
+
     def _limit_speed(self) -> None:
-        self.flight.system.guidance.speed_limit = math.inf if self.speed is None else self.speed
+        wanted = self._wanted_speed
+        self.flight.system.guidance.speed_limit = wanted if wanted < self._planned_speed else math.inf
 
     def _cruise_speed(self) -> float:
         return self.world.system.motion.speed if self.speed is None else self.speed

@@ -46,6 +46,11 @@ class AvoidanceFilter:
         self._turn = 0
         self.report = SafetyReport()
 
+    def set_margin(self, margin: float) -> None:
+        """Keep another clearance (m) from obstacles, from the next plan on."""
+        self.settings = replace(self.settings, margin=margin)
+        self.planner.settings = self.planner.barrier.settings = self.settings
+
     def correct(self, time: float, u: Array, estimate: Estimate) -> Array:
         """Return ``u`` itself: this filter acts on the trajectory."""
         return u
