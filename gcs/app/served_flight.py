@@ -16,6 +16,7 @@ from gcs.app.logs import LOG
 from gcs.flight.alarms import Alarm
 from gcs.mavlink.address import Address
 from gcs.mission.model import Mission
+from gcs.record.excerpt import take_excerpt
 from gcs.record.recorder import FlightRecorder
 from gcs.record.run_folder import NewRunFolder, write_manifest
 
@@ -85,6 +86,11 @@ class ServedFlight:
             self.result = flight_result(self._run_dir, mission, self.station, recorder.last_time, wall, incomplete)
             self._closed(self.result)
         return f"Flight {self.result.summary['outcome']}{f': {self.result.reason}' if self.result.reason else ''}"
+
+
+def take_truth(world: Path, flight: Path, station: GroundStation) -> None:
+    """Copy the true motion during a flight from the folder of its ``world`` into that of the ``flight``."""
+    take_excerpt(world, flight, station.flight.started, station.flight.time)
 
 
 @dataclass

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from gcs.mavlink.services.parameter_table import ParameterTable
 
 TAKEOFF_ALTITUDE = px4.PARAM_TAKEOFF_ALTITUDE
+_NO_MISSION = rejected_for_now("Mission denied: no mission")
 
 
 class TeamAircraft:
@@ -110,7 +111,7 @@ class TeamAircraft:
         if math.isnan(height):
             height = self._parameters[TAKEOFF_ALTITUDE]
         lowest = system.resting_altitude + system.guidance.navigator.ground_clearance
-        if (problem := self._why_not((0.0, 0.0, -height))) is not None:
+        if (problem := self._why_not((*session.pad, -height))) is not None:
             return denied(f"Takeoff denied: {problem}", 7)
         session.take_off(max(height, lowest))
         return ACCEPTED
@@ -122,6 +123,8 @@ class TeamAircraft:
                 return answer
         else:
             self.session.first = ""
+        if self.session.mission is None:
+            return _NO_MISSION
         if not self.session.is_armed and (answer := self.arm(now)) != ACCEPTED:
             return answer
         return self._begin_mission()
@@ -182,7 +185,7 @@ class TeamAircraft:
     def _begin_mission(self) -> Answer:
         session = self.session
         if session.mission is None:
-            return rejected_for_now("Mission denied: no mission")
+            return _NO_MISSION
         if session.in_air and not session.may_order:
             return self._refused("Mission")
         if session.in_air and not isinstance(session.mission.reference, Route):
@@ -229,10 +232,10 @@ class TeamAircraft:
         """Return why the payload may not be flown to a place; None: it may."""
         system = self.base.system
         lowest = system.resting_altitude + system.guidance.navigator.ground_clearance
-        if not -place[2] >= lowest - 1e-3:
-            return f"{-place[2]:.1f} m above home is lower than {lowest:.1f} m"
-        if math.dist(place, (0.0, 0.0, 0.0)) > FARTHEST:
+        if not math.dist(place, (0.0, 0.0, 0.0)) <= FARTHEST:
             return f"farther than {FARTHEST:g} m from home"
+        if -place[2] < lowest - 1e-3:
+            return f"{-place[2]:.1f} m above home is lower than {lowest:.1f} m"
         area = self.session.world.area
         return None if area is None or area.contains(np.array([place]))[0] else "outside the fence"
 
@@ -311,8 +314,10 @@ class TeamAircraft:
         source = (session.next_source if session.flies_mission else "") or session.first
         if source in labels and not self._finished:
             return labels.index(source)
-        last = self._reached[-1] if self._reached and (self._finished or session.flies_mission) else None
-        return min(labels.index(last) + 1, len(labels) - 1) if last in labels else 0
+        if not (self._finished or session.flies_mission):
+            return 0
+        done = next((labels.index(reached) for reached in reversed(self._reached) if reached in labels), -1)
+        return max(min(done + 1, len(labels) - 1), 0)
 
     @property
     def mission_finished(self) -> bool:

@@ -24,6 +24,8 @@ PREFLIGHT_DISARM = 10.0
 """s for which armed vehicles wait for a take-off, as COM_DISARM_PRFLT of PX4."""
 _AT_REST = 0.1
 """m/s; below which the payload is at rest."""
+_THERE = 0.1
+"""m; within which it is where it was ordered: it overshoots where it is paused."""
 
 
 class OpenFlight(Protocol):
@@ -58,6 +60,8 @@ class TeamSession:
         """Source of the item at which the mission is begun, or goes on; empty: its beginning."""
         self.speed: float | None = None
         """Speed that was ordered in place of the mission's (m/s); None: none."""
+        self.pad = 0.0, 0.0
+        """Where the payload stood when it was armed last, north and east."""
         self.changes = 0
         """Rises with every change that is to be reported."""
         self.notices: list[str] = []
@@ -72,6 +76,8 @@ class TeamSession:
         self._now = 0.0
         self.closing = False
         """True if no further flight is to begin."""
+        self.is_interrupted = False
+        """True if it was closed in flight."""
         self.last_reason = ""
         """Why the last flight did not begin; empty: it did, or none was tried."""
 
@@ -113,7 +119,10 @@ class TeamSession:
             return not self.is_armed
         if self.is_paused:
             record = flight.last_record
-            return record is not None and math.hypot(*record.estimate.x[3:6].tolist()) < _AT_REST
+            if record is None:
+                return False
+            place, velocity = record.estimate.x[:3].tolist(), record.estimate.x[3:6].tolist()
+            return math.hypot(*velocity) < _AT_REST and math.dist(place, self.position) < _THERE
         return flight.phase is Phase.HOLD and self.next_source is None
 
     @property
@@ -152,7 +161,8 @@ class TeamSession:
     @property
     def is_mission_done(self) -> bool:
         """True if the whole mission was flown, and at its end landed or held for good."""
-        return self._flies_mission and (self._has_landed or self.next_source is None)
+        begun = self.flight.mission_trajectory is not None
+        return self._flies_mission and begun and (self._has_landed or self.next_source is None)
 
     @property
     def _has_landed(self) -> bool:
@@ -165,7 +175,9 @@ class TeamSession:
     # Orders
 
     def arm(self) -> None:
-        """Begin a flight: connect anew, check, arm, and wait for a take-off."""
+        """Begin a flight: connect anew, check, arm, and wait for a take-off. Only when the flight before is ready."""
+        north, east, _ = self.flight.system.preflight.payload.tolist()
+        self.pad = north, east
         self._opened.close()
         self._opened = self._open_flight(self.world, True)
         self.flight.may_take_off = False
@@ -174,7 +186,8 @@ class TeamSession:
 
     def take_off(self, altitude: float) -> None:
         """Take off to ``altitude`` (m above home), and hold there."""
-        steps = (Climb("take-off", Place(None, altitude)), Stay("take-off", Place()))
+        here = Place(self.pad, altitude)
+        steps = (Climb("take-off", here), Stay("take-off", here))
         self._begin(self.world, Route(steps, self._cruise_speed(), self.world.system.resting_altitude))
         self._set_mode(px4.MODE_TAKEOFF)
 
@@ -256,6 +269,7 @@ class TeamSession:
         """Land what is in the air, and begin no flight any more."""
         self.closing = True
         if self.is_armed:
+            self.is_interrupted = True
             self.station.raise_failsafe(now, failsafe, reason)
 
     def _begin(self, mission: Mission, route: Route | Lissajous) -> None:
