@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
@@ -91,7 +92,12 @@ class MissionTrajectory:
         if self._braking:
             return
         self._climb, self.landing_from, self._waypoints = None, math.inf, None
-        self._takeoff = self.landing = ""
+        first = next(legs)
+        legs, self._takeoff, self.landing = chain((first,), legs), "", ""
+        # Until the rest is reached, and legs are planned from there.
+        self._sources = [] if isinstance(first, Land) else [first.source]
+        if isinstance(first, Land):
+            self.landing = first.source
         along = followed.stop(time).then(lambda t, here: self._along(legs, speed, t, here))
         self.trajectory = along.then(self._land)
 

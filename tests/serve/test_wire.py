@@ -26,7 +26,7 @@ SHORT = [MISSION[0]._replace(z=1.5), at(2.0, 0.0, 1.5)]
 INSTRUMENTS = {
     "HEARTBEAT": 1, "SYS_STATUS": 1, "EXTENDED_SYS_STATE": 5, "GPS_RAW_INT": 1, "VFR_HUD": 2, "ATTITUDE": 10,
     "ATTITUDE_QUATERNION": 15, "LOCAL_POSITION_NED": 15, "GLOBAL_POSITION_INT": 5, "ALTITUDE": 1, "HOME_POSITION": 0.5,
-    "SYSTEM_TIME": 1, "CURRENT_MODE": 0.5, "MISSION_CURRENT": 1, "ESTIMATOR_STATUS": 0.5, "NAV_CONTROLLER_OUTPUT": 1,
+    "SYSTEM_TIME": 1, "CURRENT_MODE": 0.5, "MISSION_CURRENT": 1, "ESTIMATOR_STATUS": 0.5,
 }  # fmt: skip
 """What displays are made of, and how often (Hz) it comes at least."""
 
@@ -62,7 +62,7 @@ def disturbance(seed: int) -> Any:
     hostile = [*hostile_to_ground(), *(one for one in hostile_to_vehicle(3) if getattr(one, "target_system", 3) == 3)]
 
     def disturb(now: float) -> Iterator[tuple[bytes, Any]]:
-        for _ in range(3):
+        if rng.random() < 0.3:
             yield rng.randbytes(rng.randrange(300)), STRANGER
             yield codecs[rng.randrange(4)].encode(rng.choice(hostile)), (STRANGER[0], rng.randrange(40000, 60000))
 
@@ -128,7 +128,7 @@ def test_parameter_outside_its_range_or_against_another_is_refused(tmp_path: Pat
     with bench(tmp_path, **{"motion.speed_max": 2.0}) as team:
         assert team.set_parameter("CLFT_MARGIN", 9.0) == (0.5, "CLFT_MARGIN: 9 is outside 0.2 .. 2")
         value, text = team.set_parameter("MPC_XY_CRUISE", 2.5)
-        assert (value, text) == (1.5, "MPC_XY_CRUISE: 2.5 is more than speed_max, 2.0")
+        assert (value, text) == (1.5, "MPC_XY_CRUISE: motion.speed: 2.5 is more than speed_max, 2.0")
         assert team.server.aircraft.base.system.motion.speed == 1.5
 
 
@@ -156,7 +156,7 @@ def test_parameters_act_in_flight(team: TeamBench) -> None:
     team.set_parameter(px4.PARAM_LAND_SPEED, 0.15)
     team.order(LAND)
     team.disarmed()
-    touchdown = team.results[0].summary["figures"]["landing"]["sinking_mps"]
+    touchdown = team.results[0].summary["landing"]["sinking_mps"]
     assert touchdown < 0.2, "a landing that is ordered later is as slow as the parameter says"
 
 

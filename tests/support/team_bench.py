@@ -6,6 +6,7 @@ import hashlib
 import math
 from collections.abc import Callable, Iterable
 from contextlib import ExitStack, closing
+from functools import partial
 from pathlib import Path
 from typing import Any, Self
 
@@ -16,7 +17,7 @@ from service_client import Asking, text_of
 from vehicle_bench import GROUND, command
 
 from gcs.app.in_process import open_world
-from gcs.app.served_flight import Flights
+from gcs.app.served_flight import Flights, take_truth
 from gcs.drivers.in_process import InProcessLockstep
 from gcs.flight.failsafe import Failsafe
 from gcs.mavlink import px4
@@ -61,7 +62,7 @@ class TeamBench(Asking):
         self.folder = folder
         self._opened = ExitStack()
         simulated = self._opened.enter_context(closing(open_world(world, folder)))
-        self._flights = Flights(simulated.addresses, folder)
+        self._flights = Flights(simulated.addresses, folder, partial(take_truth, folder))
         self.server = TeamServer(world, self._flights.open, [GROUND])
         self._opened.callback(self.server.session.close)
         self._lockstep = InProcessLockstep(simulated, self.server)
@@ -217,7 +218,9 @@ class TeamBench(Asking):
         self.until("LOCAL_POSITION_NED", rests)
 
     def disarmed(self) -> None:
+        """Wait until the team is disarmed, and the records of its flight are closed."""
         self.until("HEARTBEAT", lambda found: not found.base_mode & m.MAV_MODE_FLAG_SAFETY_ARMED)
+        self.run(0.5)
 
 
 class Truth:

@@ -65,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
         speed=arguments.speed,
         connect=None if arguments.sim else tuple(parse_url(url) for url in arguments.connect or ()),
     )
-    listen = parse_address(arguments.listen, "--listen")
+    listen = parse_address(arguments.listen, "--listen", lowest=0)
     named = arguments.clients or [f"{THIS_MACHINE}:{GROUND_PORT}"]
     clients = tuple(parse_address(text, "--client") for text in named)
     world = prepare(options)
