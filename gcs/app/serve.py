@@ -7,13 +7,15 @@ from collections.abc import Callable
 from contextlib import ExitStack, closing
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 from gcs.app.flight_log import FlightLog
 from gcs.app.fly import simulator_arguments
 from gcs.app.fly_options import FlyOptions
 from gcs.app.logs import LOG
-from gcs.app.served_flight import Flights
+from gcs.app.served_flight import Flights, take_truth
 from gcs.drivers.connection import Connection, LockstepConnection
 from gcs.drivers.forked_program import ForkedProgram
 from gcs.drivers.interrupt import Interrupt
@@ -38,8 +40,17 @@ class ServeOptions:
     """Where the streams go from the start."""
 
 
-def serve(options: ServeOptions, world: Mission, vehicle_sim: ForkedProgram | None) -> list[Path]:
-    """Serve the team in ``world`` until it is interrupted; return the run folders of the flights.
+class Served(NamedTuple):
+    """What was served."""
+
+    run_dirs: list[Path]
+    """Of the flights."""
+    interrupted: bool
+    """True if it was interrupted in flight."""
+
+
+def serve(options: ServeOptions, world: Mission, vehicle_sim: ForkedProgram | None) -> Served:
+    """Serve the team in ``world`` until it is interrupted.
 
     ``vehicle_sim``: the program forked in advance; None: a swarm that runs already is flown. Raises
     :class:`UnusableInput` before anything is started.
@@ -56,6 +67,8 @@ def serve(options: ServeOptions, world: Mission, vehicle_sim: ForkedProgram | No
         vehicles = world.system.team.vehicles
         addresses = options.fly.addresses(vehicles) if simulator is None else [*simulator.vehicles]
         flights = Flights(addresses, folder.path, begin=begin)
+        if simulator is not None:  # its rows are in the file before the messages that follow from them
+            flights.keep_truth = partial(take_truth, folder.path)
         server = TeamServer(world, flights.open, options.clients)
         resources.callback(server.session.close)
         folder.keep()
@@ -86,7 +99,7 @@ def serve(options: ServeOptions, world: Mission, vehicle_sim: ForkedProgram | No
         interrupt.end_flight()
     if simulator is not None and (reason := simulator.last_lines):
         print(*reason, sep="\n", file=sys.stderr)
-    return [result.run_dir for result in flights.results]
+    return Served([result.run_dir for result in flights.results], server.session.is_interrupted)
 
 
 def _run_with(

@@ -15,6 +15,7 @@ from gcs.app.fly import FlightResult, flight_result, ground_station
 from gcs.app.logs import LOG
 from gcs.mavlink.address import Address
 from gcs.mission.model import Mission
+from gcs.record.excerpt import take_excerpt
 from gcs.record.no_records import NoRecords
 from gcs.record.recorder import FlightRecorder
 from gcs.record.run_folder import NewRunFolder, write_manifest
@@ -70,6 +71,11 @@ class ServedFlight:
             self.result = flight_result(self._run_dir, mission, self.station, recorder.last_time, wall, incomplete)
             self._closed(self.result)
         return f"Flight {self.result.summary['outcome']}{f': {self.result.reason}' if self.result.reason else ''}"
+
+
+def take_truth(world: Path, flight: Path, station: GroundStation) -> None:
+    """Copy the true motion during a flight from the folder of its ``world`` into that of the ``flight``."""
+    take_excerpt(world, flight, station.flight.started, station.flight.time)
 
 
 @dataclass

@@ -6,7 +6,8 @@ import math
 import tempfile
 import threading
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import ExitStack, closing
+from contextlib import AbstractContextManager, ExitStack, closing, nullcontext
+from functools import partial
 from pathlib import Path
 from typing import Any, Protocol, Self
 
@@ -15,22 +16,21 @@ from gcs.app.flown import Flight, flown
 from gcs.app.fly import FlightResult
 from gcs.app.fly_options import FlyOptions
 from gcs.app.in_process import open_world
-from gcs.app.served_flight import Flights
+from gcs.app.served_flight import Flights, take_truth
 from gcs.drivers.connection import Connection
 from gcs.drivers.in_process import InProcessLockstep
 from gcs.drivers.interrupt import Interrupt
 from gcs.drivers.realtime import run_in_real_time
-from gcs.errors import OrderRefused
+from gcs.errors import GcsError, OrderRefused
 from gcs.flight.failsafe import Failsafe
-from gcs.flight.ground_station import GroundStation
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address, parse_url
 from gcs.mavlink.services.aircraft import Reposition
 from gcs.mavlink.services.answer import ACCEPTED, Answer
 from gcs.mission.model import Mission
-from gcs.record.excerpt import take_excerpt
 from gcs.record.run_folder import NewRunFolder
 from gcs.record.setpoints import SentSetpoints
+from gcs.serve.report import PayloadMotion
 from gcs.serve.server import TeamServer
 
 WORLD = "hover"
@@ -47,14 +47,15 @@ class _Drive(Protocol):
     server: TeamServer
 
     @property
+    def lock(self) -> AbstractContextManager[Any, bool | None]:
+        """To be held while the team is read or ordered: between two exchanges."""
+
+    @property
     def now(self) -> float:
         """The ground's time (s)."""
 
     def run(self, until: Callable[[], bool], timeout: float) -> bool:
         """Go on until a condition holds, or for ``timeout`` (s); return whether it does."""
-
-    def order(self, carry_out: Callable[[], Answer]) -> Answer:
-        """Carry out an order between two exchanges."""
 
     def close(self) -> None:
         """Land what is in the air, and end."""
@@ -65,7 +66,7 @@ class _Lockstep:
 
     def __init__(self, lockstep: InProcessLockstep[TeamServer], sent: Callable[[float, Sequence[Any]], None]) -> None:
         self._lockstep, self._sent = lockstep, sent
-        self.server = lockstep.station
+        self.server, self.lock = lockstep.station, nullcontext()
 
     @property
     def now(self) -> float:
@@ -79,62 +80,69 @@ class _Lockstep:
             self._lockstep.step(lambda sent: self._sent(self.now, sent))
         return True
 
-    def order(self, carry_out: Callable[[], Answer]) -> Answer:
-        return carry_out()
-
     def close(self) -> None:
         self.server.raise_failsafe(self.now, Failsafe.INTERRUPTED, "closed")
         self.run(lambda: self.server.ended, math.inf)
         self._lockstep.let_land()
 
 
-class _RealTime:
-    """A thread that runs the ground of a swarm which flies in real time."""
+class _YieldingConnection(Connection):
+    """A connection whose thread gives up a lock while it waits."""
 
-    def __init__(self, server: TeamServer, connection: Connection) -> None:
-        self.server, self._now = server, 0.0
-        self._exchanged = threading.Condition()
-        self._orders: list[Callable[[], None]] = []
-        self._interrupt = Interrupt(())
-        settings = server.session.world.system.drivers
-        self._thread = threading.Thread(
-            target=run_in_real_time,
-            args=(server, connection, self._interrupt, settings),
-            kwargs={"progress": self._progress},
-            name="team",
-            daemon=True,
-        )
+    def __init__(self, local: Address, lock: threading.Condition) -> None:
+        super().__init__(local)
+        self.lock = lock
+
+    def wait(self, timeout: float) -> bool:
+        self.lock.release()
+        try:
+            return super().wait(timeout)
+        finally:
+            self.lock.acquire()
+
+
+class _RealTime:
+    """A thread that runs the ground of a swarm which flies in real time.
+
+    It holds :attr:`lock` except while it waits for the next datagram or timer: who holds that sees the team between
+    two exchanges.
+    """
+
+    def __init__(self, server: TeamServer, connection: _YieldingConnection) -> None:
+        self.server, self.lock = server, connection.lock
+        self._connection, self._interrupt = connection, Interrupt(())
+        self._error: BaseException | None = None
+        self._thread = threading.Thread(target=self._fly, name="team", daemon=True)
         self._thread.start()
 
     @property
     def now(self) -> float:
-        return self._now
+        return self.server.now
 
-    def _progress(self) -> None:
-        with self._exchanged:
-            self._now = self.server.now
-            for carry_out in self._orders:
-                carry_out()
-            self._orders.clear()
-            self._exchanged.notify_all()
+    def _fly(self) -> None:
+        settings = self.server.session.world.system.drivers
+        with self.lock:
+            try:
+                run_in_real_time(
+                    self.server, self._connection, self._interrupt, settings, progress=self.lock.notify_all
+                )
+            except BaseException as error:
+                self._error = error
+            self.lock.notify_all()
 
     def run(self, until: Callable[[], bool], timeout: float) -> bool:
-        with self._exchanged:
-            end = self._now + timeout
-            while not (found := until()) and self._now < end and self._thread.is_alive():
-                self._exchanged.wait(1.0)
-            return found
-
-    def order(self, carry_out: Callable[[], Answer]) -> Answer:
-        answers: list[Answer] = []
-        with self._exchanged:
-            self._orders.append(lambda: answers.append(carry_out()))
-        self.run(lambda: bool(answers), math.inf)
-        return answers[0] if answers else Answer(0, "")
+        with self.lock:
+            end = self.now + timeout
+            while not (found := until()) and self.now < end and self._thread.is_alive() and self._error is None:
+                self.lock.wait(1.0)
+        if self._error is not None:
+            raise GcsError(f"the ground has ended: {self._error}") from self._error
+        return found
 
     def close(self) -> None:
         self._interrupt.requested = True
         self._thread.join()
+        self.run(lambda: True, 0.0)
 
 
 class Team:
@@ -182,10 +190,7 @@ class Team:
             simulated = opening.enter_context(closing(open_world(mission, folder.path)))
             sent = SentSetpoints()
 
-            def keep_truth(flight_dir: Path, station: GroundStation) -> None:
-                take_excerpt(folder.path, flight_dir, station.flight.started, station.flight.time)
-
-            flights = Flights(simulated.addresses, folder.path, keep_truth)
+            flights = Flights(simulated.addresses, folder.path, partial(take_truth, folder.path))
             server = TeamServer(mission, flights.open)
             drive = _Lockstep(InProcessLockstep(simulated, server), sent.add)
             folder.keep()
@@ -207,7 +212,7 @@ class Team:
         options = FlyOptions(Path(WORLD), connect=tuple(parse_url(url) for url in urls))
         with ExitStack() as opening:
             folder = opening.enter_context(NewRunFolder("team", run_dir))
-            connection = opening.enter_context(closing(Connection(_local(options))))
+            connection = opening.enter_context(closing(_YieldingConnection(_local(options), threading.Condition())))
             flights = Flights(options.addresses(mission.system.team.vehicles), folder.path)
             server = TeamServer(mission, flights.open)
             folder.keep()
@@ -223,15 +228,13 @@ class Team:
     @property
     def position(self) -> tuple[float, float, float]:
         """Where the payload's centre is, by the ground's estimate: north, east and up (m); nan before it is known."""
-        self._server.report.update(self.time)
-        motion = self._server.report.own_position
+        motion = self._motion()
         return (_NAN, _NAN, _NAN) if motion is None else (motion.position[0], motion.position[1], -motion.position[2])
 
     @property
     def speed(self) -> float:
         """Speed of the payload (m/s)."""
-        self._server.report.update(self.time)
-        motion = self._server.report.own_position
+        motion = self._motion()
         return _NAN if motion is None else math.hypot(*motion.velocity)
 
     @property
@@ -336,10 +339,17 @@ class Team:
     def _ready(self) -> None:
         """Wait for the checks before take-off."""
         self._drive.run(lambda: self._aircraft.arming_problem(self.time) is None, _READY_TIME)
-        self._server.report.update(self.time)
+        self._motion()  # where it stands, until the flight measures it anew
+
+    def _motion(self) -> PayloadMotion | None:
+        with self._drive.lock:
+            self._server.report.update(self.time)
+            return self._server.report.own_position
 
     def _order(self, carry_out: Callable[[], Answer]) -> None:
-        answer = self._drive.order(carry_out)
+        self._drive.run(lambda: True, 0.0)  # raises if the ground has ended
+        with self._drive.lock:
+            answer = carry_out()
         if answer != ACCEPTED:
             raise OrderRefused(answer.text)
 

@@ -57,7 +57,7 @@ class InProcessLockstep(Generic[P]):
 
     def __init__(self, world: World, station: P) -> None:
         self.world, self.station = world, station
-        self._time = LockstepTime(world.time)
+        self._time, self._vehicles = LockstepTime(world.time), frozenset(world.addresses)
 
     @property
     def now(self) -> float:
@@ -89,8 +89,8 @@ class InProcessLockstep(Generic[P]):
     ) -> None:
         """Make one exchange and go on to the time of the next.
 
-        ``exchanged`` is called in between with what the ground station has sent. ``others``: datagrams that it receives
-        from elsewhere, each with its sender.
+        ``exchanged`` is called in between with what the ground station has sent, also to others than the vehicles.
+        ``others``: datagrams that it receives from elsewhere, each with its sender.
         """
         world, station, time = self.world, self.station, self._time
         world.advance_to(time.world)
@@ -99,7 +99,7 @@ class InProcessLockstep(Generic[P]):
         station.receive_all(received, time.ground)
         sent = station.datagrams_to_send(time.ground)
         station.sent()
-        world.receive(sent, time.world)
+        world.receive([one for one in sent if one[1] in self._vehicles], time.world)
         exchanged(sent)
         if not station.ended:
             time.advance(world.next_timer(), next_call_us(station.next_timer(), time.us))

@@ -72,7 +72,7 @@ class Check(Enum):
     __hash__ = object.__hash__  # looked up at every exchange; Enum's own hashes the name, in Python
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class System:
     """The objects that conditions are evaluated on."""
 

@@ -64,7 +64,7 @@ class ControlLoop:
         """``brake``: the stop of a vehicle without set-points, see :mod:`idc_controller.trajectory.stop_plan`."""
         self.estimator, self.controller = estimator, controller
         self.links = links
-        self.compute_times, self._brake = compute_times, brake
+        self.compute_times, self.brake = compute_times, brake
         self.stop_plans: deque[StopPlan] = deque()
         """Of the control steps since the last set-points that all vehicles have received; the first one goes out."""
 
@@ -130,7 +130,7 @@ class ControlLoop:
         """
         self.compute_times.lap(Part.MONITORING)
         self.estimator.setpoints.add(effective, record.decision.u, leaves)
-        plan = stop_plan(self.controller.parameters, record.decision.flat, effective, record.estimate.x, self._brake)
+        plan = stop_plan(self.controller.parameters, record.decision.flat, effective, record.estimate.x, self.brake)
         plans = self.stop_plans
         plans.append(plan._replace(descent=effective + hold.duration))
         received = self.estimator.setpoints.received_by_all(effective, hold.unconfirmed_max)

@@ -45,7 +45,7 @@ class FlightStatus:
 
     def __init__(self, flight: Flight) -> None:
         system = flight.mission.system
-        self._flight, self._margin, self._range = flight, system.avoidance.margin, system.range_sensor.range
+        self._flight, self._range = flight, system.range_sensor.range
         self._formation = formation = Formation(flight.control.controller.parameters)
         self._reach = float(np.hypot(*formation.hover_offsets[:, :2].T).max()) + formation.disc_radius
         self._planned = _planned_durations(flight.mission)
@@ -95,8 +95,9 @@ class FlightStatus:
         if not near:
             return Figure(f"no obstacle within {self._range:.0f} m")
         least = min(separation.clearance for separation in near)
-        state = OK if least >= self._margin else WARNING if least > 0.0 else BAD
-        return Figure(f"clearance {least:.2f} m (margin {self._margin:.2f} m)", state)
+        margin = self._flight.mission.system.avoidance.margin
+        state = OK if least >= margin else WARNING if least > 0.0 else BAD
+        return Figure(f"clearance {least:.2f} m (margin {margin:.2f} m)", state)
 
     def links(self) -> list[Figure]:
         """Return loss (%), one-way latency (ms) and rate (Hz) of the telemetry of each vehicle."""

@@ -29,7 +29,7 @@ class Guarantee:
     """The detector of these."""
 
     def __init__(self, flight: Flight) -> None:
-        self._margin = flight.mission.system.avoidance.margin
+        self._flight = flight
         self._parameters = flight.mission.system.parameters()
         self._vehicles = flight.control.estimator.measurement_model.vehicles
 
@@ -44,7 +44,8 @@ class Guarantee:
         if not safety.verified:
             is_void = safety.clearance < 0.0
             code = GuaranteeAlarm.SAFETY_GUARANTEE_VOID if is_void else GuaranteeAlarm.PLAN_UNVERIFIED
-            text = f"the plan keeps {safety.clearance:.2f} m (margin {self._margin:.2f} m)"
+            margin = self._flight.mission.system.avoidance.margin
+            text = f"the plan keeps {safety.clearance:.2f} m (margin {margin:.2f} m)"
             step.raise_alarm(safety.nearest or "team", code, text)
         if safety.payload_bound is None or safety.uav_bound is None:
             return

@@ -3,10 +3,11 @@
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import dropwhile
+from itertools import chain, dropwhile
 
 import numpy as np
 
+from gcs.config import MotionConfig
 from gcs.mission.model import Lissajous, Mission
 from gcs.mission.route import Circle, FlyTo, GroundLeg, HoldForever, Land, Leg, TakeOff
 from gcs.mission.steps import Speed
@@ -59,6 +60,10 @@ class MissionTrajectory:
         self.landing = ""
         """Source of the landing, once it is read."""
 
+    def set_motion(self, motion: MotionConfig) -> None:
+        """Have other limits of what is planned from now on: after the next :meth:`go_on`, and of the landing."""
+        self._motion = motion
+
     def reference(self, times: Array) -> tuple[Array, Array]:
         """Return position and velocity (K, 3) at ``times``: a descent ends on the ground, not below it."""
         position, velocity = self.trajectory.derivatives(times, 1)
@@ -103,7 +108,12 @@ class MissionTrajectory:
             return
         self._climb, self._waypoints = None, None
         self.landing_from = self.slow_from = math.inf
-        self._takeoff = self.landing = ""
+        first = next(legs)
+        legs, self._takeoff, self.landing = chain((first,), legs), "", ""
+        # Until the rest is reached, and legs are planned from there.
+        self._sources = [] if isinstance(first, Land) else [first.source]
+        if isinstance(first, Land):
+            self.landing = first.source
         self._above = followed.stop(time).then(lambda t, here: self._along(legs, speed, t, here))
         self.trajectory = self._above.then(self._land)
 

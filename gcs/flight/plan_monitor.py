@@ -85,7 +85,7 @@ class ImpactMonitor:
 
     def __init__(self, links: Sequence[VehicleLink]) -> None:
         self.links = links
-        self._on_ground: list[int] = []
+        self._on_ground: list[int | None] = []
 
     def impacts(self, *, clear: bool) -> list[int]:
         """Return whose accelerometer has clipped since the payload became ``clear`` of the ground.
@@ -93,7 +93,13 @@ class ImpactMonitor:
         0 .. N - 1 the vehicles', N the payload unit's. Call once a control step.
         """
         counts = [link.status.clipping for link in self.links]
-        counts.append(max(link.status.payload_clipping for link in self.links))
+        of_payload = [count for link in self.links if (count := link.status.payload_clipping) is not None]
+        counts.append(max(of_payload, default=None))
         if not clear or not self._on_ground:  # touching the ground is an impact, too
             self._on_ground = counts
-        return [i for i, (count, before) in enumerate(zip(counts, self._on_ground, strict=True)) if count > before]
+        # A count that is first reported in the air may be of flights before.
+        self._on_ground = [c if before is None else before for c, before in zip(counts, self._on_ground, strict=True)]
+        both = zip(counts, self._on_ground, strict=True)
+        return [
+            i for i, (count, before) in enumerate(both) if count is not None and before is not None and count > before
+        ]

@@ -19,6 +19,7 @@ from idc_controller.geometry.obstacles import ObstacleSource
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.progress import AdaptiveGuidance, Guidance
 from idc_controller.guidance.resting_place import RestingPlace
+from idc_controller.guidance.settings import NavigatorSettings
 from idc_controller.guidance.sight import SensorView, Sight, SpeedBySight, closing_speed
 from idc_controller.model.linear import LinearModel
 from idc_controller.perception.obstacle_map import ObstacleMap
@@ -124,19 +125,23 @@ def guidance(
     ``sight``: what range sensors have seen, to limit the speed by; None: no range sensors.
     """
     stages = config.safety.planner.chain.times
-    settings = replace(
+    navigator = Navigator(model.parameters, navigator_settings(config), obstacles, stages, area)
+    weight = model.parameters.m_0 * model.parameters.g
+    by_sight = None if sight is None else speed_by_sight(config, sight)
+    return AdaptiveGuidance(navigator, config.guidance.progress, stages, weight, by_sight)
+
+
+def navigator_settings(config: SystemConfig) -> NavigatorSettings:
+    """Return the settings of detours, with those that other tables own."""
+    return replace(
         config.guidance.navigator,
         limits=config.motion.limits,
         margin=config.avoidance.margin,
         detour=config.guidance.detour,
     )
-    navigator = Navigator(model.parameters, settings, obstacles, stages, area)
-    weight = model.parameters.m_0 * model.parameters.g
-    by_sight = None if sight is None else speed_by_sight(config, model, sight)
-    return AdaptiveGuidance(navigator, config.guidance.progress, stages, weight, by_sight)
 
 
-def speed_by_sight(config: SystemConfig, model: LinearModel, sight: Sight) -> SpeedBySight:
+def speed_by_sight(config: SystemConfig, sight: Sight) -> SpeedBySight:
     """Return the limit of the progress by what range sensors have seen."""
     settings = replace(config.guidance.sight, limits=config.motion.limits, margin=config.avoidance.margin)
     formation = tilted_formation(config)

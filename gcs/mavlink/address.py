@@ -48,10 +48,13 @@ def parse_url(text: str, option: str = "--connect") -> ConnectionUrl:
     return ConnectionUrl(host, int(match["port"]), match["scheme"] == "udpin")
 
 
-def parse_address(text: str, option: str) -> Address:
-    """Return the address of ``HOST:PORT``. Raises :class:`UnusableInput` that names ``option`` for anything else."""
+def parse_address(text: str, option: str, lowest: int = 1) -> Address:
+    """Return the address of ``HOST:PORT``. Raises :class:`UnusableInput` that names ``option`` for anything else.
+
+    ``lowest`` port: 0, for one that the system chooses, only where it is listened.
+    """
     host, colon, port = text.rpartition(":")
-    if not (host and colon and port.isdecimal() and 1 <= int(port) <= 65535):
+    if not (host and colon and port.isdecimal() and lowest <= int(port) <= 65535):
         raise UnusableInput(f"{option} {text}: expected HOST:PORT")
     return resolved(host, f"{option} {text}"), int(port)
 

@@ -38,9 +38,9 @@ class VehicleStatus:
     landed_state: int = mavlink.MAV_LANDED_STATE_UNDEFINED
     prearm_ok: bool | None = None
     """Result of its prearm checks, from SYS_STATUS; None: not reported yet."""
-    clipping: int = 0
+    clipping: int | None = None
     """How often its accelerometer has been driven out of its range, from VIBRATION."""
-    payload_clipping: int = 0
+    payload_clipping: int | None = None
     """How often that of the payload's unit has."""
     obstacle_sensing_valid: bool = True
     """Health of its range sensor, from SYS_STATUS."""

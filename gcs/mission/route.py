@@ -166,8 +166,8 @@ class Route:
             yield from flight.fly(Return(END))
 
     def beginning_at(self, source: str) -> Route:
-        """Return the route that begins with the first step of ``source``."""
-        first = next(index for index, step in enumerate(self.steps) if step.source == source)
+        """Return the route that begins with the first step of ``source``; without one, with what follows the last."""
+        first = next((index for index, step in enumerate(self.steps) if step.source == source), len(self.steps))
         moved = (replace(s, target=s.target + 1) if isinstance(s, Jump) else s for s in self.steps)
         return replace(self, steps=(Jump(source, first + 1, None), *moved))
 

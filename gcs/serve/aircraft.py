@@ -22,9 +22,11 @@ from gcs.serve.plan_file import label, mission_of
 from gcs.serve.session import TeamSession
 
 if TYPE_CHECKING:
+    from gcs.config import SystemConfig
     from gcs.mavlink.services.parameter_table import ParameterTable
 
 TAKEOFF_ALTITUDE = px4.PARAM_TAKEOFF_ALTITUDE
+_NO_MISSION = rejected_for_now("Mission denied: no mission")
 
 
 class TeamAircraft:
@@ -46,6 +48,11 @@ class TeamAircraft:
         self._flight, self._seen = session.flight, 0
         """The flight whose progress was reported, and how much of it."""
         self._finished = False
+
+    def configure(self, system: SystemConfig) -> None:
+        """Fly with other settings from now on: see :meth:`.TeamSession.configure`."""
+        self.base = replace(self.base, system=system)
+        self.session.configure(system)
 
     # Arming
 
@@ -106,7 +113,7 @@ class TeamAircraft:
         if math.isnan(height):
             height = self._parameters[TAKEOFF_ALTITUDE]
         lowest = system.resting_altitude + system.guidance.navigator.ground_clearance
-        if (problem := self._why_not((0.0, 0.0, -height))) is not None:
+        if (problem := self._why_not((*session.pad, -height))) is not None:
             return denied(f"Takeoff denied: {problem}", 7)
         session.take_off(max(height, lowest))
         return ACCEPTED
@@ -118,6 +125,8 @@ class TeamAircraft:
                 return answer
         else:
             self.session.first = ""
+        if self.session.mission is None:
+            return _NO_MISSION
         if not self.session.is_armed and (answer := self.arm(now)) != ACCEPTED:
             return answer
         return self._begin_mission()
@@ -178,7 +187,7 @@ class TeamAircraft:
     def _begin_mission(self) -> Answer:
         session = self.session
         if session.mission is None:
-            return rejected_for_now("Mission denied: no mission")
+            return _NO_MISSION
         if session.in_air and not session.may_order:
             return self._refused("Mission")
         if session.in_air and not isinstance(session.mission.reference, Route):
@@ -225,10 +234,10 @@ class TeamAircraft:
         """Return why the payload may not be flown to a place; None: it may."""
         system = self.base.system
         lowest = system.resting_altitude + system.guidance.navigator.ground_clearance
-        if not -place[2] >= lowest - 1e-3:
-            return f"{-place[2]:.1f} m above home is lower than {lowest:.1f} m"
-        if math.dist(place, (0.0, 0.0, 0.0)) > FARTHEST:
+        if not math.dist(place, (0.0, 0.0, 0.0)) <= FARTHEST:
             return f"farther than {FARTHEST:g} m from home"
+        if -place[2] < lowest - 1e-3:
+            return f"{-place[2]:.1f} m above home is lower than {lowest:.1f} m"
         area = self.session.world.area
         return None if area is None or area.contains(np.array([place]))[0] else "outside the fence"
 
@@ -243,7 +252,9 @@ class TeamAircraft:
         """Have another mission, of which ``current`` is flown first; ``on_reached`` is called with each item done."""
         session = self.session
         if session.flies_mission and session.in_air:
-            return rejected_for_now("Mission refused: the one before is being flown; hold first")
+            if not session.is_paused:
+                return rejected_for_now("Mission refused: the one before is being flown; hold first")
+            session.forget_mission()
         self._plans[PlanType.MISSION] = tuple(items)
         labels = [label(item, number) for number, item in enumerate(items)]
         self._take(mission_of(self._plans, self.base) if items else None, labels)
@@ -271,9 +282,10 @@ class TeamAircraft:
     def take_fence(self, items: Sequence[MissionItem]) -> None:
         """Have another fence from the next arming on."""
         self._plans[PlanType.FENCE] = tuple(items)
-        self.session.world = mission_of(self._plans, self.base)
-        if self.session.mission is not None:
-            self.session.mission = self.session.world
+        session = self.session
+        session.world = mission_of(self._plans, self.base)
+        if session.mission is not None:
+            session.mission = replace(session.mission, boundary=session.world.boundary, excluded=session.world.excluded)
 
     def take_rally_points(self, items: Sequence[MissionItem]) -> None:
         """Have other rally points, places where a return may land, from now on."""
@@ -300,8 +312,14 @@ class TeamAircraft:
     @property
     def current_item(self) -> int:
         """The item of the mission that is flown to, or will be."""
-        done = self._index_of(self._reached[-1]) + 1 if self._reached else self._index_of(self.session.first)
-        return min(max(done, 0), max(len(self._labels) - 1, 0))
+        session, labels = self.session, self._labels
+        source = (session.flight.next_source if session.flies_mission else "") or session.first
+        if source in labels and not self._finished:
+            return labels.index(source)
+        if not (self._finished or session.flies_mission):
+            return 0
+        done = next((labels.index(reached) for reached in reversed(self._reached) if reached in labels), -1)
+        return max(min(done + 1, len(labels) - 1), 0)
 
     @property
     def mission_finished(self) -> bool:
@@ -312,9 +330,6 @@ class TeamAircraft:
     def mission_active(self) -> bool:
         """Whether the mode that flies the mission is active."""
         return self.session.mode == px4.MODE_MISSION and self.session.is_armed
-
-    def _index_of(self, source: str) -> int:
-        return self._labels.index(source) if source in self._labels else 0
 
     def report_reached(self) -> None:
         """Report the items that were reached since the last call."""

@@ -30,7 +30,7 @@ from gcs.mavlink.services.streams import StreamRequests
 from gcs.mavlink.services.unserved_inputs import STICKS, UnservedInputs
 from gcs.mission.model import Mission
 from gcs.serve.aircraft import TeamAircraft
-from gcs.serve.parameters import team_parameters
+from gcs.serve.parameters import TeamParameters
 from gcs.serve.plan_rules import TeamPlanRules
 from gcs.serve.report import TeamReport
 from gcs.serve.session import OpenFlight, TeamSession
@@ -63,8 +63,9 @@ class TeamServer:
         """``clients``: addresses to which the streams go from the start, whether anybody listens there or not."""
         config = world.system
         self.session = TeamSession(world, open_flight)
-        self.parameters = team_parameters(config, TEAM_SYSTEM)
+        self.parameters = TeamParameters(config, TEAM_SYSTEM)
         self.aircraft = TeamAircraft(self.session, self.parameters)
+        self.parameters.on_change = self.aircraft.configure
         self.report = TeamReport(TEAM_SYSTEM, self.session, self.aircraft)
         link = config.vehicle_link
         self.builders: dict[MessageKey, Callable[[float], Built]] = {

@@ -5,22 +5,28 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from gcs.flight.alarms import Alarm
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.flight import Flight
 from gcs.flight.ground_station import GroundStation
 from gcs.flight.phase import CONTROLLED, IN_AIR, Phase
+from gcs.flight.reconfiguration import reconfigure
 from gcs.mavlink import px4
 from gcs.mission.model import Lissajous, Mission
 from gcs.mission.route import FlyTo, HoldForever, Land, Leg, Position, Route
-from gcs.mission.steps import Climb, Place, Stay
+from gcs.mission.steps import Climb, Place, Speed, Stay
+
+if TYPE_CHECKING:
+    from gcs.config import SystemConfig
 
 PREFLIGHT_DISARM = 10.0
 """s for which armed vehicles wait for a take-off, as COM_DISARM_PRFLT of PX4."""
 _AT_REST = 0.1
 """m/s; below which the payload is at rest."""
+_THERE = 0.1
+"""m; within which it is where it was ordered: it overshoots where it is paused."""
 
 
 class OpenFlight(Protocol):
@@ -55,6 +61,8 @@ class TeamSession:
         """Source of the item at which the mission is begun, or goes on; empty: its beginning."""
         self.speed: float | None = None
         """Speed that was ordered in place of the mission's (m/s); None: none."""
+        self.pad = 0.0, 0.0
+        """Where the payload stood when it was armed last, north and east."""
         self.changes = 0
         """Rises with every change that is to be reported."""
         self.notices: list[str] = []
@@ -67,6 +75,8 @@ class TeamSession:
         self._now = 0.0
         self.closing = False
         """True if no further flight is to begin."""
+        self.is_interrupted = False
+        """True if it was closed in flight."""
         self.last_reason = ""
         """Why the last flight did not begin; empty: it did, or none was tried."""
 
@@ -108,7 +118,10 @@ class TeamSession:
             return not self.is_armed
         if self.is_paused:
             record = flight.last_record
-            return record is not None and math.hypot(*record.estimate.x[3:6].tolist()) < _AT_REST
+            if record is None:
+                return False
+            place, velocity = record.estimate.x[:3].tolist(), record.estimate.x[3:6].tolist()
+            return math.hypot(*velocity) < _AT_REST and math.dist(place, self.position) < _THERE
         return flight.phase is Phase.HOLD and flight.next_source is None
 
     @property
@@ -143,7 +156,9 @@ class TeamSession:
     # Orders
 
     def arm(self) -> None:
-        """Begin a flight: connect anew, check, arm, and wait for a take-off."""
+        """Begin a flight: connect anew, check, arm, and wait for a take-off. Only when the flight before is ready."""
+        north, east, _ = self.flight.system.preflight.payload.tolist()
+        self.pad = north, east
         self._opened.close()
         cargo = self.flight.cargo
         self._opened = self._open_flight(self.world, True)
@@ -154,7 +169,8 @@ class TeamSession:
 
     def take_off(self, altitude: float) -> None:
         """Take off to ``altitude`` (m above home), and hold there."""
-        steps = (Climb("take-off", Place(None, altitude)), Stay("take-off", Place()))
+        here = Place(self.pad, altitude)
+        steps = (Climb("take-off", here), Stay("take-off", here))
         self._begin(self.world, Route(steps, self._cruise_speed(), self.world.system.resting_altitude))
         self._set_mode(px4.MODE_TAKEOFF)
 
@@ -170,13 +186,16 @@ class TeamSession:
             self._flies_mission = True
             self._set_mode(px4.MODE_MISSION)
             return
+        resumed = self._flies_mission and self.in_air and self.is_paused and not anew
+        if resumed and self._wanted_speed > self._planned_speed:
+            resumed, self.first = False, self.flight.next_source or self.first
         if self.first:
             route = route.beginning_at(self.first)
         if self.speed is not None:
             route = replace(route, speed=self.speed)
         if not self.in_air:
             self._begin(self.mission, route)
-        elif self._flies_mission and self.is_paused and not anew:
+        elif resumed:
             self._limit_speed()
         else:
             self._fly(route.legs(self.position), route.speed)
@@ -205,13 +224,24 @@ class TeamSession:
     def change_speed(self, speed: float) -> None:
         """Fly with another ``speed`` (m/s) from now on; faster than planned, from the next rest on."""
         self.speed = speed
-        if not self.may_order or self.is_paused:
-            return
-        if self._flies_mission and speed > self._planned_speed:
-            self.first = self.flight.next_source or ""
-            self.fly_mission(anew=True)
-        else:
-            self._limit_speed()
+        self._have_speed()
+
+    def configure(self, system: SystemConfig) -> None:
+        """Have other settings: at once, or from the next legs on, or from the next arming; as the flight takes them."""
+        before, cruise = self.world.system.motion.speed, system.motion.speed
+        self.world = replace(self.world, system=system)
+        if self.mission is not None:
+            route = self.mission.reference
+            if isinstance(route, Route) and route.speed == before:  # it names none
+                route = replace(route, speed=cruise)
+            self.mission = replace(self.mission, system=system, reference=route)
+        reconfigure(self.flight, system)
+        if self.speed is None and cruise != before:
+            self._have_speed()
+
+    def forget_mission(self) -> None:
+        """Leave a paused mission for good, and stay where it was paused."""
+        self._flies_mission = False
 
     def disarm(self) -> None:
         """Stop the rotors on the ground."""
@@ -221,6 +251,7 @@ class TeamSession:
         """Land what is in the air, and begin no flight any more."""
         self.closing = True
         if self.is_armed:
+            self.is_interrupted = True
             self.station.raise_failsafe(now, failsafe, reason)
 
     def _begin(self, mission: Mission, route: Route | Lissajous) -> None:
@@ -239,8 +270,34 @@ class TeamSession:
         self.flight.system.guidance.speed_limit = math.inf
         self.changes += 1
 
+    def _have_speed(self) -> None:
+        """Fly with the wanted speed: a slower one at once, a faster one, or beside the mission's own, on new legs."""
+        if not self.may_order or self.is_paused:
+            return
+        if self._flies_mission and self.flight.next_source and self._needs_new_legs:
+            self.first = self.flight.next_source
+            self.fly_mission(anew=True)
+        else:
+            self._limit_speed()
+
+    @property
+    def _needs_new_legs(self) -> bool:
+        assert self.mission is not None
+        if not isinstance(self.mission.reference, Route):
+            return False
+        has_own = any(isinstance(step, Speed) for step in self.mission.reference.steps)
+        return self._wanted_speed > self._planned_speed or (self.speed is None and has_own)
+
+    @property
+    def _wanted_speed(self) -> float:
+        """The speed that was ordered, else the mission's, else that of what is flown without one (m/s)."""
+        if self.speed is None and self._flies_mission and self.mission is not None:
+            return self.mission.reference.speed if isinstance(self.mission.reference, Route) else math.inf
+        return self._cruise_speed()
+
     def _limit_speed(self) -> None:
-        self.flight.system.guidance.speed_limit = math.inf if self.speed is None else self.speed
+        wanted = self._wanted_speed
+        self.flight.system.guidance.speed_limit = wanted if wanted < self._planned_speed else math.inf
 
     def _cruise_speed(self) -> float:
         return self.world.system.motion.speed if self.speed is None else self.speed

@@ -102,24 +102,30 @@ class Navigator:
         area: FlightArea | None = None,
     ) -> None:
         """Args: the ``stages`` (K + 1,) (s) over which obstacles are predicted; the ``area`` that must not be left."""
-        self.settings, self.obstacles, self._area = settings, obstacles, area
-        tilted, at_rest = BoundingCylinder.of(parameters, settings.link_tilt), BoundingCylinder.of(parameters)
-        self.clearances = (
-            (tilted, settings.margin + settings.spare), (tilted, settings.margin), (at_rest, settings.margin),
-        )  # fmt: skip
-        """Formations and their clearances (m) on detours, in the order in which they are tried."""
+        self.obstacles, self._area, self._parameters = obstacles, area, parameters
+        self.set_settings(settings)
         self._usable = len(self.clearances)
         """How many of them are tried: not those at which the formation was held up on this way back to the mission."""
         self._flown = 0
         """Which of them the last detour has."""
         self._stages = stages
-        self.lowest = self.formation.below + settings.ground_clearance
-        """Lowest altitude of the payload's centre on a detour (m)."""
         self.hold_up = HoldUp(settings)
         self._detour: WaypointTrajectory | None = None
         self._resume = 0.0
         self.detours = 0
         """Detours taken so far."""
+
+    def set_settings(self, settings: NavigatorSettings) -> None:
+        """Have other settings from the next search on; the intervals of searches remain."""
+        self.settings = settings
+        tilted = BoundingCylinder.of(self._parameters, settings.link_tilt)
+        at_rest = BoundingCylinder.of(self._parameters)
+        self.clearances = (
+            (tilted, settings.margin + settings.spare), (tilted, settings.margin), (at_rest, settings.margin),
+        )  # fmt: skip
+        """Formations and their clearances (m) on detours, in the order in which they are tried."""
+        self.lowest = self.formation.below + settings.ground_clearance
+        """Lowest altitude of the payload's centre on a detour (m)."""
 
     @property
     def formation(self) -> BoundingCylinder:

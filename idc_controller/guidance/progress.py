@@ -10,7 +10,7 @@ import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.guidance.navigator import Navigator
-from idc_controller.guidance.settings import ProgressSettings
+from idc_controller.guidance.settings import NavigatorSettings, ProgressSettings
 from idc_controller.guidance.sight import SightLimit, SpeedBySight
 from idc_controller.model.drag import Air
 from idc_controller.trajectory.flatness import PayloadTrajectory
@@ -95,6 +95,11 @@ class AdaptiveGuidance(Guidance):
         self._deflected = False
         self._restart: tuple[float, float] | None = None
         """Time at which another mission was given and its progress then (s); until the next step."""
+
+    def set_settings(self, navigator: NavigatorSettings, by_sight: SpeedBySight | None) -> None:
+        """Have other settings of detours and another limit by sight, from the next step on."""
+        self.navigator.set_settings(navigator)
+        self._by_sight = by_sight
 
     def reference(self, time: float, mission: Trajectory) -> ScaledReference:
         """See :meth:`Guidance.reference`."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.interpolate import BPoly
@@ -53,6 +54,10 @@ class RestingPlace:
         usual = Braking(settings=braking)
         self._choices = _Choices([usual, *_deflected(usual, settings)], settings)
         self._last = _USUAL
+
+    def set_margin(self, margin: float) -> None:
+        """Keep another clearance (m) from obstacles, from the next stop on."""
+        self.settings = replace(self.settings, margin=margin)
 
     def __call__(self, time: float, state: Array) -> Braking:
         """Return the stop from ``state`` (3, 3) at ``time`` (s).

@@ -51,6 +51,11 @@ class AvoidanceFilter:
         self._pieces.clear()
         self._trajectory, self._plan = None, None
 
+    def set_margin(self, margin: float) -> None:
+        """Keep another clearance (m) from obstacles, from the next plan on."""
+        self.settings = replace(self.settings, margin=margin)
+        self.planner.settings = self.planner.barrier.settings = self.settings
+
     def correct(self, time: float, u: Array, estimate: Estimate) -> Array:
         """Return ``u`` itself: this filter acts on the trajectory."""
         return u

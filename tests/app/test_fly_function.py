@@ -170,7 +170,7 @@ def test_import_of_nothing_new_leaves_the_collection_of_garbage_as_it_was(collec
     try:
         with importing():
             assert not gc.isenabled()
-        assert gc.isenabled() is collects and gc.get_freeze_count() == frozen
+        assert gc.isenabled() is collects and gc.get_freeze_count() <= frozen  # what was frozen may end
     finally:
         gc.enable()
 

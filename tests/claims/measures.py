@@ -56,7 +56,7 @@ def links() -> dict[str, Any]:
 def sight() -> dict[str, Any]:
     """Limits of the speed by sight (m/s), and the way to stop (m) from a speed."""
     system = SystemConfig()
-    limit = speed_by_sight(system, LinearModel(system.parameters()), None)  # type: ignore[arg-type]
+    limit = speed_by_sight(system, None)  # type: ignore[arg-type]
     settings, acceleration = limit.settings, limit.settings.limits.acceleration
 
     def way(speed: float) -> float:

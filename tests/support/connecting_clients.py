@@ -1,4 +1,4 @@
-"""Ground stations that connect to a vehicle as theirs do, in simulated time: every request is sent once.
+"""Ground stations that connect to an aircraft as theirs do, in simulated time: every request is sent once.
 
 QGroundControl: the states of ``InitialConnectStateMachine.cc``, each of which repeats its request at a timeout. MAVROS:
 what its plugins ask when a vehicle's HEARTBEAT has come; it has the vehicle's own system id.
@@ -15,7 +15,6 @@ from vehicle_bench import ACCEPTED, GROUND, UNSUPPORTED, Bench, command
 from gcs.mavlink import newer_messages
 from gcs.mavlink.services.mission_item import PlanType
 
-VEHICLE = 1, 1
 STEP = 0.02
 """Time (s) between two looks at what has come."""
 RETRY = 1.0
@@ -46,7 +45,7 @@ class Client:
         """What the vehicle has sent here, not what it forwards."""
         self.bench.collect()
         inbox = self.bench.inbox.setdefault(GROUND, [])
-        return [found for found in inbox if (found.get_srcSystem(), found.get_srcComponent()) == VEHICLE]
+        return [found for found in inbox if (found.get_srcSystem(), found.get_srcComponent()) == self.bench.target]
 
     def tell(self, message: Any) -> None:
         """Send what draws no answer."""
@@ -67,7 +66,8 @@ class Client:
 
     def command(self, number: int, *parameters: float) -> int:
         """Return the result of a command; its acknowledgement is for this client."""
-        request = command(number, *parameters)
+        system, component = self.bench.target
+        request = command(number, *parameters, system=system, component=component)
         [ack] = self.draw(request, "COMMAND_ACK")
         assert (ack.command, ack.target_system, ack.target_component) == (number, self.system, self.component)
         return int(ack.result)
@@ -80,7 +80,7 @@ class Client:
 
     def parameters(self, component: int) -> dict[str, float]:
         """Return all parameters: none is missing, so that none is asked for by its index."""
-        list_all = m.MAVLink_param_request_list_message(1, component)
+        list_all = m.MAVLink_param_request_list_message(self.bench.target[0], component)
         values = self.draw(list_all, "PARAM_VALUE", lambda found: found.param_index == found.param_count - 1)
         check, *values = values
         assert check.param_id == "_HASH_CHECK"
@@ -89,15 +89,15 @@ class Client:
 
     def plan(self, plan_type: PlanType) -> list[Any]:
         """Return the items of a plan, each requested in its turn, and acknowledge them."""
-        [found] = self.draw(m.MAVLink_mission_request_list_message(1, 1, plan_type), "MISSION_COUNT")
+        [found] = self.draw(m.MAVLink_mission_request_list_message(*self.bench.target, plan_type), "MISSION_COUNT")
         assert found.mission_type == plan_type
         items = []
         for number in range(found.count):
-            request = m.MAVLink_mission_request_int_message(1, 1, number, plan_type)
+            request = m.MAVLink_mission_request_int_message(*self.bench.target, number, plan_type)
             [item] = self.draw(request, "MISSION_ITEM_INT")
             assert (item.seq, item.mission_type) == (number, plan_type)
             items.append(item)
-        self.tell(m.MAVLink_mission_ack_message(1, 1, m.MAV_MISSION_ACCEPTED, plan_type))
+        self.tell(m.MAVLink_mission_ack_message(*self.bench.target, m.MAV_MISSION_ACCEPTED, plan_type))
         return items
 
     def has_heard_heartbeat(self) -> bool:
@@ -141,7 +141,7 @@ class QGroundControl(Client):
         read = self.parameters(m.MAV_COMP_ID_ALL)
         if read["_HASH_CHECK"] == self.values.get("_HASH_CHECK"):
             kind = m.MAV_PARAM_TYPE_UINT32
-            self.tell(m.MAVLink_param_set_message(1, 1, b"_HASH_CHECK", read["_HASH_CHECK"], kind))
+            self.tell(m.MAVLink_param_set_message(*self.bench.target, b"_HASH_CHECK", read["_HASH_CHECK"], kind))
         self.values = read
 
     def ask_plans(self) -> dict[PlanType, list[Any]]:

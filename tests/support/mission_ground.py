@@ -74,13 +74,13 @@ def same(items: Any, others: Any) -> bool:
 class Uploader:
     """The client side of an upload: answers what it is asked, and repeats itself when nothing comes."""
 
-    def __init__(self, items: Any, plan_type: int = PlanType.MISSION) -> None:
+    def __init__(self, items: Any, plan_type: int = PlanType.MISSION, target: int = 1) -> None:
         self.items = tuple(items)
-        self.plan_type = plan_type
+        self.plan_type, self.target = plan_type, target
         self.result: int | None = None
         self.tries = 0
         self.due = 0.0
-        self._last: Any = m.MAVLink_mission_count_message(1, 1, len(self.items), plan_type)
+        self._last: Any = m.MAVLink_mission_count_message(target, 1, len(self.items), plan_type)
 
     @property
     def is_done(self) -> bool:
@@ -97,7 +97,8 @@ class Uploader:
         if kind == "MISSION_ACK":
             self.result = message.type
         elif kind == "MISSION_REQUEST_INT" and message.seq < len(self.items):
-            self._last = item_message(message.seq, self.items[message.seq], self.plan_type)
+            item = self.items[message.seq]
+            self._last = item_message(message.seq, item, self.plan_type, target=self.target)
             self.tries, self.due = 0, now + RETRY
             return [self._last]
         return []
@@ -116,8 +117,8 @@ class Uploader:
 class Downloader:
     """The client side of a download."""
 
-    def __init__(self, plan_type: int = PlanType.MISSION) -> None:
-        self.plan_type = plan_type
+    def __init__(self, plan_type: int = PlanType.MISSION, target: int = 1) -> None:
+        self.plan_type, self.target = plan_type, target
         self.items: list[MissionItem] = []
         self.count: int | None = None
         self.gave_up = False
@@ -150,7 +151,7 @@ class Downloader:
             return []
         self.tries, self.due = 0, now + RETRY
         if self.is_done:
-            return [m.MAVLink_mission_ack_message(1, 1, ACCEPTED, self.plan_type)]
+            return [m.MAVLink_mission_ack_message(self.target, 1, ACCEPTED, self.plan_type)]
         return [self._request()]
 
     def run(self, now: float) -> list[Any]:
@@ -163,8 +164,8 @@ class Downloader:
 
     def _request(self) -> Any:
         if self.count is None:
-            return m.MAVLink_mission_request_list_message(1, 1, self.plan_type)
-        return m.MAVLink_mission_request_int_message(1, 1, len(self.items), self.plan_type)
+            return m.MAVLink_mission_request_list_message(self.target, 1, self.plan_type)
+        return m.MAVLink_mission_request_int_message(self.target, 1, len(self.items), self.plan_type)
 
 
 class Flight:

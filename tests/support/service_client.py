@@ -25,19 +25,16 @@ def text_of(messages: list[Any]) -> str:
     return "".join(found.text for found in messages if found.get_type() == "STATUSTEXT")
 
 
-class ServiceClient(Bench):
-    """``address`` is a port of clients; the vehicle stands, and has heard the client."""
+class Asking:
+    """What a client sends, and what comes back, on a bench whose :meth:`collect` lets the aircraft answer."""
 
-    address = GROUND
+    inbox: dict[Any, list[Any]]
 
-    def __init__(self, *, free: bool) -> None:
-        super().__init__(free=free, clients={GROUND: True})
-        self.free = free
-        self.run(0.1)
-        self.send(m.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3))
-        self.run(0.1)
+    def send(self, message: Any, sender: Any = GROUND) -> None:
+        raise NotImplementedError
 
-    # What comes
+    def collect(self) -> None:
+        raise NotImplementedError
 
     def ask(self, message: Any, sender: Any = GROUND) -> list[Any]:
         """Send a message; return what comes back at once, apart from streams that were due."""
@@ -54,6 +51,25 @@ class ServiceClient(Bench):
             for found in self.ask(message)
         )
 
+    def texts(self, message: Any) -> str:
+        """Send a message; return the texts that come back, long ones put together from their chunks."""
+        return text_of(self.ask(message))
+
+
+class ServiceClient(Bench, Asking):
+    """``address`` is a port of clients; the vehicle stands, and has heard the client."""
+
+    address = GROUND
+
+    def __init__(self, *, free: bool) -> None:
+        super().__init__(free=free, clients={GROUND: True})
+        self.free = free
+        self.run(0.1)
+        self.send(m.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3))
+        self.run(0.1)
+
+    # What comes
+
     def result(self, message: Any, sender: Any = GROUND, system: int = 255) -> int:
         """Send a command; return the result of its acknowledgement, -1 without one."""
         acks = [found for found in self.ask(message, sender) if found.get_type() == "COMMAND_ACK"]
@@ -61,10 +77,6 @@ class ServiceClient(Bench):
 
     def accepts(self, number: int, *parameters: float) -> bool:
         return self.result(command(number, *parameters)) == m.MAV_RESULT_ACCEPTED
-
-    def texts(self, message: Any) -> str:
-        """Send a message; return the texts that come back, long ones put together from their chunks."""
-        return text_of(self.ask(message))
 
     def last(self, kind: str) -> Any:
         return self.got(kind)[-1]

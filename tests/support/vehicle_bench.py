@@ -40,6 +40,8 @@ ARM, DISARM = command(400, 1), command(400, 0)
 class Bench:
     """A vehicle, a body that stands or flies, and grounds that keep what they were sent."""
 
+    target = 1, 1
+
     def __init__(self, *, clients_answer: bool = True, **options: Any) -> None:
         """``clients_answer``: who sends anything has addressed the vehicle by its id before."""
         self.clients_answer = clients_answer

@@ -65,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
         speed=arguments.speed,
         connect=None if arguments.sim else tuple(parse_url(url) for url in arguments.connect or ()),
     )
-    listen = parse_address(arguments.listen, "--listen")
+    listen = parse_address(arguments.listen, "--listen", lowest=0)
     named = arguments.clients or [f"{THIS_MACHINE}:{GROUND_PORT}"]
     clients = tuple(parse_address(text, "--client") for text in named)
     world = prepare(options)
@@ -75,6 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
         from gcs.drivers.simulator import PROGRAM
     with ExitStack() as started:
         vehicle_sim = started.enter_context(ForkedProgram(PROGRAM)) if arguments.sim else None
-        for folder in serve(ServeOptions(options, listen, clients), world, vehicle_sim):
-            print(folder)
-    return ExitStatus.DONE
+        served = serve(ServeOptions(options, listen, clients), world, vehicle_sim)
+    for folder in served.run_dirs:
+        print(folder)
+    return ExitStatus.INTERRUPTED if served.interrupted else ExitStatus.DONE
