@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
     from gcs.flight.control_loop import StepRecord
     from gcs.flight.flight import Flight
     from gcs.flight.ground_station import GroundStation
-    from idc_controller.control.controller import Decision
-    from idc_controller.perception.obstacle_map import ObstacleMap
 
 
 class _NoRecords:
@@ -34,8 +33,8 @@ class _NoRecords:
     def datagrams(self, now: float, datagrams: Sequence[bytes]) -> None: ...
     def end_exchange(self) -> None: ...
     def step(self, flight: Flight, time: float, record: StepRecord | None) -> None: ...
-    def compute_times(self, time: float, decision: Decision, parts: Sequence[float]) -> None: ...
-    def obstacles(self, obstacle_map: ObstacleMap, time: float) -> None: ...
+    def compute_times(self, time: float, decision: object, parts: Sequence[float]) -> None: ...
+    def obstacles(self, obstacle_map: object, time: float) -> None: ...
     def alarm(self, alarm: Alarm) -> None: ...
 
 
@@ -89,8 +88,8 @@ class ServedFlight:
 
 
 def take_truth(world: Path, flight: Path, station: GroundStation) -> None:
-    """Copy the true motion during a flight from the folder of its ``world`` into that of the ``flight``."""
-    take_excerpt(world, flight, station.flight.started, station.flight.time)
+    """Copy the true motion since a flight began from the folder of its ``world`` into that of the ``flight``."""
+    take_excerpt(world, flight, station.flight.started, math.inf)
 
 
 @dataclass
