@@ -80,7 +80,7 @@ class Session:
         folder.mkdir()
         self.answers: dict[str, Any] = {}
         self._times: dict[str, tuple[float, float]] = {}
-        with TeamBench(read_mission("hover"), folder) as self.bench:
+        with TeamBench(read_mission("hover", None, {"team.vehicles": 3}), folder) as self.bench:
             self._on_ground()
             self._mission()
             self._second_flight()
