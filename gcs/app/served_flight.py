@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -74,8 +75,8 @@ class ServedFlight:
 
 
 def take_truth(world: Path, flight: Path, station: GroundStation) -> None:
-    """Copy the true motion during a flight from the folder of its ``world`` into that of the ``flight``."""
-    take_excerpt(world, flight, station.flight.started, station.flight.time)
+    """Copy the true motion since a flight began from the folder of its ``world`` into that of the ``flight``."""
+    take_excerpt(world, flight, station.flight.started, math.inf)
 
 
 @dataclass

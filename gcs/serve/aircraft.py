@@ -59,17 +59,19 @@ class TeamAircraft:
     def arming_problem(self, now: float) -> str | None:
         """Return why the team cannot be armed; None: it can, or is."""
         session = self.session
-        if session.is_armed or session.flight.is_ready:
+        if session.flight.phase in (Phase.SPOOL_DOWN, Phase.DISARM):
+            return "the flight before is ending"
+        if session.is_armed or (session.flight.is_ready and not session.flight.ended):
             return None
         missing = session.flight.system.preflight.missing
         return missing or session.last_reason or "the checks before take-off are running"
 
     def arm(self, now: float, force: bool = False) -> Answer:
         """Begin a flight; the vehicles are armed when the checks before take-off, never skipped, have passed."""
-        if self.session.is_armed:
-            return ACCEPTED
         if (problem := self.arming_problem(now)) is not None:
             return rejected_for_now(f"Arming denied: {problem}")
+        if self.session.is_armed:
+            return ACCEPTED
         self.session.arm()
         if self.session.mode == px4.MODE_MISSION:  # chosen on the ground: arming begins it, as in PX4
             return self._begin_mission()

@@ -151,6 +151,8 @@ class TeamServer:
         if self.ended:
             return None
         due = [self._peers.next_due, self._missions.next_due]
+        if self.session.run_down > self.now:
+            due.append(self.session.run_down)
         if (of_station := self.session.station.next_timer()) is not None:
             due.append(of_station)
         return max(min(due), self.now)

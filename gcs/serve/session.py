@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 PREFLIGHT_DISARM = 10.0
 """s for which armed vehicles wait for a take-off, as COM_DISARM_PRFLT of PX4."""
+_RUN_DOWN = 2.0
+"""s after disarming, for rotors and load to come to rest before the records of the flight are closed."""
 _AT_REST = 0.1
 """m/s; below which the payload is at rest."""
 _THERE = 0.1
@@ -73,6 +75,8 @@ class TeamSession:
         self._flies_mission = False
         self._phase = Phase.CONNECT
         self._now = 0.0
+        self.run_down = -math.inf
+        """Time until which the records of a flight that has ended remain open (s); -inf: none has."""
         self.closing = False
         """True if no further flight is to begin."""
         self.is_interrupted = False
@@ -132,7 +136,7 @@ class TeamSession:
     @property
     def ended(self) -> bool:
         """True if it is closing and the payload is on the ground."""
-        return self.closing and (not self.is_armed)
+        return self.closing and not self.is_armed and not self._now < self.run_down
 
     @property
     def position(self) -> Position:
@@ -330,7 +334,9 @@ class TeamSession:
                 flight.stand_down()
         if self.mode == px4.MODE_TAKEOFF and flight.phase is Phase.HOLD:
             self._set_mode(px4.MODE_HOLD)
-        if flight.ended and not self.closing:
+        if flight.ended and flight.may_arm and self.run_down == -math.inf:
+            self.run_down = now + _RUN_DOWN
+        if flight.ended and not self.closing and now >= self.run_down:
             self._end(flight)
 
     def _take_alarms(self, flight: Flight) -> None:
@@ -345,7 +351,7 @@ class TeamSession:
         said = self._opened.close()
         if flight.may_arm:
             self.notices.append(said or "Flight ended")
-        self.last_reason = flight.reason
+        self.last_reason, self.run_down = flight.reason, -math.inf
         self._opened = self._open_flight(self.world, False)
         self.flight.cargo = flight.cargo
         self._wait()

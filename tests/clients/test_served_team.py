@@ -69,7 +69,7 @@ async def program(client):
 
 def arm(client):
     """Arm as soon as the checks of the next flight have passed."""
-    while "denied" in client.command("arm throttle", "^ARMED$|> ARMED$|Arming denied")[0]:
+    while client.command("arm throttle", r"COMMAND_ACK: COMPONENT_ARM_DISARM: (\w+)")[1] != "ACCEPTED":
         pass
 
 

@@ -258,6 +258,13 @@ def test_accelerometer_that_clips_clear_of_the_ground_is_an_impact():
     assert (hit.vehicles, hit.source) == ((), "payload") and "accelerometer of the payload" in hit.reason
 
 
+def test_count_that_is_first_reported_in_the_air_is_no_impact():
+    before, monitor = impact(2.0, [None, 0, 0, 0], payload=None)
+    assert before is None
+    assert impact(2.0, [3, 0, 0, 0], payload=2, monitor=monitor)[0] is None, "clipped on flights before"
+    assert impact(2.0, [4, 0, 0, 0], payload=2, monitor=monitor)[0].vehicles == (0,)
+
+
 def test_touch_down_is_no_impact():
     _, monitor = impact(2.0, [0, 0, 0, 0])
     assert impact(0.01, [2, 2, 2, 2], payload=5, monitor=monitor)[0] is None

@@ -40,6 +40,12 @@ def test_arming_before_the_checks_is_refused_with_the_reason(flown: Session) -> 
     assert text == "Arming denied: the checks before take-off are running"
 
 
+def test_arming_while_a_flight_is_ending_is_refused(flown: Session) -> None:
+    assert flown.answers["arm while ending"] == (
+        m.MAV_RESULT_TEMPORARILY_REJECTED, "Arming denied: the flight before is ending",
+    )  # fmt: skip
+
+
 @pytest.mark.parametrize("name", REFUSED_ON_GROUND)
 def test_order_on_the_ground_is_refused_with_the_reason(flown: Session, name: str) -> None:
     _, result, reason = REFUSED_ON_GROUND[name]

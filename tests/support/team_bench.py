@@ -220,7 +220,7 @@ class TeamBench(Asking):
     def disarmed(self) -> None:
         """Wait until the team is disarmed, and the records of its flight are closed."""
         self.until("HEARTBEAT", lambda found: not found.base_mode & m.MAV_MODE_FLAG_SAFETY_ARMED)
-        self.run(0.5)
+        self.run(2.5)
 
 
 class Truth:

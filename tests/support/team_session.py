@@ -80,7 +80,7 @@ class Session:
         folder.mkdir()
         self.answers: dict[str, Any] = {}
         self._times: dict[str, tuple[float, float]] = {}
-        with TeamBench(read_mission("hover"), folder) as self.bench:
+        with TeamBench(read_mission("hover", None, {"team.vehicles": 3}), folder) as self.bench:
             self._on_ground()
             self._mission()
             self._second_flight()
@@ -135,7 +135,9 @@ class Session:
         self._times["set item"] = bench.now, bench.now
         self.answers["set item"] = bench.ask(m.MAVLink_mission_set_current_message(*bench.target, 1))
         self._step("again", None, lambda: self._reached(1), lambda: self._reached(3), lambda: bench.run(1.0))
-        self._step("return", RETURN, bench.disarmed)
+        self._step("return", RETURN, lambda: bench.until("HEARTBEAT", lambda found: not found.base_mode & 128))
+        self.answers["arm while ending"] = bench.answer(ARM)
+        self._step("ended", None, bench.disarmed)
 
     def _second_flight(self) -> None:
         bench = self.bench
