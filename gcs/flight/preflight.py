@@ -165,7 +165,7 @@ class Preflight:
 
     @property
     def positions_until(self) -> float:
-        """Time (s, team) until which every vehicle and the payload unit have sent positions; -inf: one has sent none."""
+        """Time (s, team) until which all have sent positions, the payload unit, too; -inf: one has sent none."""
         return min(self._newest.get(source, -math.inf) for source in self._positions)
 
     def is_current(self, time: float) -> bool:
