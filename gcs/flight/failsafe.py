@@ -88,7 +88,8 @@ def _parameter_mismatch(system: System, moment: Moment) -> Trigger | None:
 
 def _position_unknown(system: System, moment: Moment) -> Trigger | None:
     preflight = system.preflight
-    if preflight.has_positions or moment.time - preflight.check_start <= system.settings.connect_timeout:
+    since = max(preflight.positions_until, preflight.check_start)
+    if moment.time - since <= system.settings.connect_timeout:
         return None
     return Trigger("no position of every vehicle and of the payload")
 

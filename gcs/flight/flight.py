@@ -16,7 +16,7 @@ from gcs.flight.landing_place import LandingPlace
 from gcs.flight.mission_legs import MissionLegs
 from gcs.flight.mission_trajectory import MissionTrajectory
 from gcs.flight.payload_monitor import PayloadMonitor
-from gcs.flight.phase import CONTROLLED, IN_AIR, Phase
+from gcs.flight.phase import CONTROLLED, IN_AIR, STANDING, Phase
 from gcs.flight.plan_monitor import ImpactMonitor, PlanMonitor
 from gcs.flight.preflight import Preflight
 from gcs.flight.spool import SpoolUp, Touchdown
@@ -225,13 +225,16 @@ class Flight:
         self._leave(self.time, lambda followed, progress: go_on(followed, progress, self.legs.flight(), speed))
 
     def stand_down(self) -> None:
-        """Disarm vehicles that wait on the ground, armed, for their take-off."""
-        if self.phase is Phase.ARM:
+        """Stay on the ground, disarmed: what is left of the mission is not flown. Without effect in the air."""
+        if self.phase not in STANDING:
+            return
+        self.legs, self.is_redirected = MissionLegs(iter(())), True
+        if self.phase in (Phase.CHECK, Phase.ARM, Phase.ON_GROUND):
             self._disarm(self.time)
 
     @property
     def passed(self) -> list[str]:
-        """Sources of what was flown: waypoints reached, landings, in the order of the flight."""
+        """Sources of what was done: waypoints reached, landings, legs on the ground, in the order of the flight."""
         flown = None if self._touchdown is not None else self.mission_trajectory
         if flown is None:
             return self._passed
@@ -239,9 +242,12 @@ class Flight:
 
     @property
     def next_source(self) -> str | None:
-        """Source of what is flown to; None: it holds for good at the last, or stands."""
+        """Source of what is flown to, or is done on the ground; None: nothing, or it holds for good at the last."""
         flown = None if self._touchdown is not None else self.mission_trajectory
-        return None if flown is None else flown.next_source(self.system.guidance.progress(self.time))
+        if flown is not None:
+            return flown.next_source(self.system.guidance.progress(self.time))
+        on_ground = self.ground_legs.source if self.phase is Phase.ON_GROUND and self.ground_legs is not None else None
+        return on_ground or self.legs.next_source
 
     # Phases
 
@@ -327,8 +333,9 @@ class Flight:
             return
         self.control.stop_plans.clear()
         self.system.preflight.restart(landed=self.landings > 0)
+        self._passed = self.passed
         self._sequence = self.ground_legs = GroundLegs(
-            self.system.team, time, self.legs.on_ground(), self.cargo, self._settings
+            self.system.team, time, self.legs.on_ground(), self.cargo, self._settings, self._passed.append
         )
         self.phase = Phase.ON_GROUND
 
@@ -349,7 +356,7 @@ class Flight:
     def _check(self, time: float, now: float) -> None:
         preflight = self.system.preflight
         passed = not self._evaluate(Check.PREFLIGHT, time, now)
-        self.is_ready = passed and preflight.has_positions and preflight.is_settled(time)
+        self.is_ready = passed and preflight.is_current(time) and preflight.is_settled(time)
         if self.is_ready and self.may_arm:
             self._pad = RestTrajectory(preflight.payload, time)
             self._ending = None

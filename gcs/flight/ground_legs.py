@@ -1,7 +1,7 @@
 """What is done between a landing and the next take-off: waits, and commands to the grippers of the payload unit."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -17,11 +17,17 @@ class GroundLegs(CommandSequence):
     """Legs on the ground, one after the other. A gripper that does not do what is commanded ends nothing."""
 
     def __init__(
-        self, team: Team, time: float, legs: Iterator[GroundLeg], cargo: CargoState, settings: FlightSettings = DEFAULTS
+        self,
+        team: Team,
+        time: float,
+        legs: Iterator[GroundLeg],
+        cargo: CargoState,
+        settings: FlightSettings = DEFAULTS,
+        on_done: Callable[[str], None] = lambda source: None,
     ) -> None:
-        """``cargo``: takes what the grippers have acknowledged."""
+        """``cargo``: takes what the grippers have acknowledged. ``on_done``: is called with each leg's source."""
         super().__init__(team, time, settings)
-        self._legs, self._cargo = legs, cargo
+        self._legs, self._cargo, self._on_done = legs, cargo, on_done
         self._leg: GroundLeg | None = next(legs, None)
         self._command: PayloadUnitCommand | None = None
         self.moved: frozenset[int] = frozenset()
@@ -29,9 +35,15 @@ class GroundLegs(CommandSequence):
         self.refusals: list[str] = []
         """Commands that the payload unit has not accepted, with its reasons."""
 
+    @property
+    def source(self) -> str | None:
+        """Source of the leg that is carried out; None: all are done."""
+        return None if self._leg is None else self._leg.source
+
     def step(self, time: float, now: float) -> None:
         """See :class:`CommandSequence`."""
         while (leg := self._leg) is not None and self._is_done(leg, time, now):
+            self._on_done(leg.source)
             self._leg, self._command, self._since = next(self._legs, None), None, time
         self.done = leg is None
 

@@ -32,6 +32,11 @@ class MissionLegs:
         """True if the next leg is a take-off, also that to a curve."""
         return self._curve or not (self._next is None or isinstance(self._next, GroundLeg))
 
+    @property
+    def next_source(self) -> str | None:
+        """Source of the next leg; None: there is none, or a curve."""
+        return None if self._next is None else self._next.source
+
     def on_ground(self) -> Iterator[GroundLeg]:
         """Yield the legs on the ground before the next take-off."""
         while isinstance(leg := self._next, GroundLeg):

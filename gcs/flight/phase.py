@@ -27,3 +27,5 @@ class Phase(Enum):
 IN_AIR = frozenset({Phase.CLIMB, Phase.FLY, Phase.HOLD, Phase.LAND})
 CONTROLLED = IN_AIR | {Phase.SPOOL_UP, Phase.SPOOL_DOWN}
 """Phases in which the estimator and the controller run."""
+STANDING = frozenset({Phase.CHECK, Phase.ARM, Phase.SPOOL_DOWN, Phase.DISARM, Phase.ON_GROUND})
+"""Phases in which the payload stands, before a take-off or after a landing."""

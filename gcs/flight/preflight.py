@@ -164,6 +164,15 @@ class Preflight:
         return all(self._positions.values())
 
     @property
+    def positions_until(self) -> float:
+        """Time (s, team) until which all have sent positions, the payload unit, too; -inf: one has sent none."""
+        return min(self._newest.get(source, -math.inf) for source in self._positions)
+
+    def is_current(self, time: float) -> bool:
+        """Return whether no position is older at team ``time`` (s) than telemetry may be in flight."""
+        return self.has_positions and time - self.positions_until <= self._settings.failsafe.telemetry_timeout
+
+    @property
     def payload(self) -> Array:
         """Position of the payload (3,)."""
         return np.asarray(np.mean(self._positions[PAYLOAD], axis=0))

@@ -171,9 +171,12 @@ class Route:
         moved = (replace(s, target=s.target + 1) if isinstance(s, Jump) else s for s in self.steps)
         return replace(self, steps=(Jump(source, first + 1, None), *moved))
 
-    def first_lap(self, limit: int) -> list[Leg]:
-        """Return up to ``limit`` legs; of an endless route those before an item is flown for the second time."""
-        legs = list(islice(self.legs(), limit))
+    def first_lap(self, limit: int, start: Position | None = None) -> list[Leg]:
+        """Return up to ``limit`` legs; of an endless route those before an item is flown for the second time.
+
+        ``start`` as of :meth:`legs`.
+        """
+        legs = list(islice(self.legs(start), limit))
         if len(legs) < limit:
             return legs
         seen = set[str]()

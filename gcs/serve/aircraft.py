@@ -18,6 +18,7 @@ from gcs.mavlink.services.mission_item import MissionItem, PlanType
 from gcs.mission.items import FARTHEST
 from gcs.mission.model import Mission
 from gcs.mission.route import Position, Route
+from gcs.serve.mission_start import begins_on_ground, why_not
 from gcs.serve.plan_file import label, mission_of
 from gcs.serve.session import TeamSession
 
@@ -82,7 +83,7 @@ class TeamAircraft:
         session = self.session
         if not session.is_armed:
             return ACCEPTED
-        if session.flight.phase is not Phase.ARM:
+        if session.flight.phase is not Phase.ARM and not session.is_at_stop:
             return denied("Disarming denied: in the air" if session.in_air else "Disarming denied: not armed yet")
         session.disarm()
         return ACCEPTED
@@ -109,6 +110,8 @@ class TeamAircraft:
         session, system = self.session, self.base.system
         if not session.is_armed:
             return rejected_for_now("Takeoff denied: not armed")
+        if session.is_at_stop:
+            return rejected_for_now("Takeoff denied: the mission takes off by itself")
         if session.in_air or session.flight.may_take_off:
             return rejected_for_now("Takeoff denied: it has taken off already")
         height = altitude - self.base.home.altitude
@@ -134,10 +137,12 @@ class TeamAircraft:
         return self._begin_mission()
 
     def pause(self, now: float) -> Answer:
-        """Hold; the mission's current item stays."""
+        """Hold; the mission's current item stays. On the ground the mission ends."""
         session = self.session
         if session.may_order:
             session.hold()
+        elif session.is_at_stop:
+            session.disarm()
         elif session.is_armed:
             return self._refused("Hold")
         else:
@@ -168,6 +173,8 @@ class TeamAircraft:
 
     def change_speed(self, speed: float, now: float) -> Answer:
         """Fly with another speed (m/s) from now on."""
+        if self.session.is_at_stop:
+            return self._refused("Speed change")
         limit = self.base.system.motion.speed_max
         if not 0.0 < speed <= limit:
             return denied(f"Speed change denied: {speed:g} m/s is outside 0 .. {limit:g} m/s", 2)
@@ -190,12 +197,20 @@ class TeamAircraft:
         session = self.session
         if session.mission is None:
             return _NO_MISSION
+        if session.is_at_stop:
+            return ACCEPTED  # it goes on by itself
         if session.in_air and not session.may_order:
             return self._refused("Mission")
         if session.in_air and not isinstance(session.mission.reference, Route):
             return denied("Mission denied: a curve begins on the ground")
         if not session.in_air and session.flight.may_take_off:
             return rejected_for_now("Mission denied: it has taken off already")
+        if (problem := self._why_not_from(session.first)) is not None:
+            return denied(f"Mission denied: {problem}")
+        route, is_connecting = session.mission.reference, session.flight.phase is Phase.CONNECT
+        on_ground = isinstance(route, Route) and not session.in_air and begins_on_ground(route, session.first)
+        if on_ground and not is_connecting:
+            return rejected_for_now("Mission denied: it begins on the ground, without rotors: disarm first")
         if self._finished or not session.in_air:
             self._reached, self._finished = [], False
         session.fly_mission()
@@ -203,6 +218,9 @@ class TeamAircraft:
 
     def _return(self) -> Answer:
         session = self.session
+        if session.is_at_stop:
+            session.disarm()
+            return ACCEPTED
         if not session.may_order:
             return self._refused("Return")
         north, east, _ = session.position
@@ -212,6 +230,9 @@ class TeamAircraft:
         return ACCEPTED
 
     def _land(self) -> Answer:
+        if self.session.is_at_stop:
+            self.session.disarm()
+            return ACCEPTED
         if not self.session.may_order:
             return self._refused("Land")
         self.session.land()
@@ -221,7 +242,9 @@ class TeamAircraft:
         """Return the refusal of an order that the phase of the flight does not allow."""
         session = self.session
         reason = "not in the air"
-        if session.in_air:
+        if session.is_at_stop:
+            reason = "the mission stands on the ground"
+        elif session.in_air:
             reason = session.flight.reason or f"in phase {session.flight.phase.value}"
         return rejected_for_now(f"{what} denied: {reason}")
 
@@ -243,6 +266,13 @@ class TeamAircraft:
         area = self.session.world.area
         return None if area is None or area.contains(np.array([place]))[0] else "outside the fence"
 
+    def _why_not_from(self, first: str) -> str | None:
+        session = self.session
+        assert session.mission is not None
+        if not isinstance(session.mission.reference, Route):
+            return None
+        return why_not(session.mission.reference, first, session.position if session.in_air else None)
+
     # The mission
 
     @property
@@ -253,7 +283,7 @@ class TeamAircraft:
     def take_mission(self, items: Sequence[MissionItem], current: int, on_reached: Callable[[int], None]) -> Answer:
         """Have another mission, of which ``current`` is flown first; ``on_reached`` is called with each item done."""
         session = self.session
-        if session.flies_mission and session.in_air:
+        if session.flies_mission and session.is_armed:
             if not session.is_paused:
                 return rejected_for_now("Mission refused: the one before is being flown; hold first")
             session.forget_mission()
@@ -303,6 +333,10 @@ class TeamAircraft:
         after = next((name for name in self._labels[index:] if name in flown), None)
         if after is None:
             return denied(f"Mission item denied: after {self._labels[index]} nothing is flown")
+        if session.is_at_stop:
+            return self._refused("Mission item")
+        if (problem := self._why_not_from(after)) is not None:
+            return denied(f"Mission item denied: {problem}")
         if session.in_air and session.flies_mission:
             if not session.may_order:
                 return self._refused("Mission item")

@@ -11,12 +11,13 @@ from gcs.flight.alarms import Alarm
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.flight import Flight
 from gcs.flight.ground_station import GroundStation
-from gcs.flight.phase import CONTROLLED, IN_AIR, Phase
+from gcs.flight.phase import CONTROLLED, IN_AIR, STANDING, Phase
 from gcs.flight.reconfiguration import reconfigure
 from gcs.mavlink import px4
 from gcs.mission.model import Lissajous, Mission
 from gcs.mission.route import FlyTo, HoldForever, Land, Leg, Position, Route
 from gcs.mission.steps import Climb, Place, Speed, Stay
+from gcs.serve.mission_start import beginning
 
 if TYPE_CHECKING:
     from gcs.config import SystemConfig
@@ -110,6 +111,13 @@ class TeamSession:
         return self.flight.phase in IN_AIR and self.flight.phase is not Phase.LAND and not self.flight.reason
 
     @property
+    def is_at_stop(self) -> bool:
+        """True while a mission stands on the ground, and is to go on by itself."""
+        flight = self.flight
+        goes_on = self._flies_mission and flight.may_take_off and not flight.reason and self.is_armed
+        return goes_on and flight.phase in STANDING and (not flight.legs.ended or flight.phase is Phase.ON_GROUND)
+
+    @property
     def is_paused(self) -> bool:
         """True while the mission is paused on its way."""
         return self.flight.system.guidance.speed_limit == 0.0
@@ -193,8 +201,7 @@ class TeamSession:
         resumed = self._flies_mission and self.in_air and self.is_paused and not anew
         if resumed and self._wanted_speed > self._planned_speed:
             resumed, self.first = False, self.flight.next_source or self.first
-        if self.first:
-            route = route.beginning_at(self.first)
+        route = beginning(route, self.first)
         if self.speed is not None:
             route = replace(route, speed=self.speed)
         if not self.in_air:
@@ -248,7 +255,10 @@ class TeamSession:
         self._flies_mission = False
 
     def disarm(self) -> None:
-        """Stop the rotors on the ground."""
+        """Stay on the ground, with stopped rotors; a mission ends there."""
+        if self.is_at_stop:
+            self._flies_mission = False
+            self.notices.append("Mission ended on the ground")
         self.flight.stand_down()
 
     def raise_failsafe(self, now: float, failsafe: Failsafe, reason: str) -> None:

@@ -165,6 +165,15 @@ def test_places_are_the_means_of_the_last_samples(links):
     np.testing.assert_allclose(preflight.vehicles[0], [5.0 + 0.5 * (kept - 1), 0.0, 0.0])
 
 
+def test_positions_are_current_while_none_is_older_than_the_timeout_of_telemetry(links):
+    preflight, timeout = Preflight(SimpleNamespace(links=links)), DEFAULTS.failsafe.telemetry_timeout
+    for source, late in ((PAYLOAD, 0.0), (0, 0.5), (1, 1.0)):
+        assert not preflight.is_current(NOW)
+        preflight.add(Position(NOW + late, source, np.zeros(3), np.zeros(3)))
+    assert preflight.positions_until == NOW
+    assert preflight.is_current(NOW + 0.99 * timeout) and not preflight.is_current(NOW + 1.01 * timeout)
+
+
 def test_places_are_settled_once_averaged_for_their_time(links):
     preflight = Preflight(SimpleNamespace(links=links))
     assert not preflight.is_settled(1e9)

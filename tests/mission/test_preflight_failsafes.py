@@ -83,7 +83,7 @@ def checked(
 
 
 def test_team_in_its_places_is_cleared():
-    assert checked(SETTLED + 100.0) is None
+    assert checked(BEGIN + 0.9 * DEFAULTS.failsafe.connect_timeout) is None
 
 
 def test_armed_vehicle_and_failing_prearm_checks_are_refused_at_once_and_named():
@@ -110,6 +110,12 @@ def test_parameter_that_differs_by_more_than_the_tolerance_is_refused_but_more_t
 @pytest.mark.parametrize(("late", "is_refused"), [(-0.1, False), (0.0, False), (0.1, True)])
 def test_position_that_never_comes_is_refused_after_the_timeout(source, begin, late, is_refused):
     found = checked(begin + DEFAULTS.failsafe.connect_timeout + late, silent=(source,), begin=begin)
+    assert (found and found[0]) is (Failsafe.POSITION_UNKNOWN if is_refused else None)
+
+
+@pytest.mark.parametrize(("late", "is_refused"), [(-0.1, False), (0.1, True)])
+def test_positions_that_cease_are_refused_after_the_timeout(late, is_refused):
+    found = checked(BEGIN + DEFAULTS.failsafe.connect_timeout + late)
     assert (found and found[0]) is (Failsafe.POSITION_UNKNOWN if is_refused else None)
 
 

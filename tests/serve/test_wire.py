@@ -122,6 +122,10 @@ def test_armed_team_that_does_not_take_off_disarms(team: TeamBench) -> None:
     team.disarmed()
     assert 9.0 < team.now - armed < 12.0
     assert "Disarmed: no take-off for 10 s" in [found.text for found in team.got("STATUSTEXT")]
+    sent = len(team.got("HEARTBEAT"))
+    team.ready()
+    team.run(2.0)
+    assert not any(found.base_mode & 128 for found in team.got("HEARTBEAT")[sent:])
 
 
 def test_parameter_outside_its_range_or_against_another_is_refused(tmp_path: Path) -> None:
