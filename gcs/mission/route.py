@@ -31,6 +31,8 @@ from gcs.mission.steps import (
 
 Position = tuple[float, float, float]
 
+TRIED_LEGS = 20_000
+"""So many legs are tried before the flight. Legs repeat after a lap; a file has at most 10 000 items."""
 END = "end of mission"
 """Source of what follows a mission that does not say how it ends."""
 
@@ -170,6 +172,15 @@ class Route:
         first = next((index for index, step in enumerate(self.steps) if step.source == source), len(self.steps))
         moved = (replace(s, target=s.target + 1) if isinstance(s, Jump) else s for s in self.steps)
         return replace(self, steps=(Jump(source, first + 1, None), *moved))
+
+    def problem(self, start: Position | None = None) -> str | None:
+        """Return why it cannot be flown from ``start``, as :meth:`legs` has it; None: it can."""
+        try:
+            for _ in islice(self.legs(start), TRIED_LEGS):
+                pass
+        except RouteError as error:
+            return f"{error.source}: {error.field}: {error.reason}"
+        return None
 
     def first_lap(self, limit: int) -> list[Leg]:
         """Return up to ``limit`` legs; of an endless route those before an item is flown for the second time."""

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gcs.flight.phase import Phase
 from gcs.mavlink import px4
 from gcs.mavlink.services.aircraft import Orbit, Place, Reposition, Sender, Turn
 from gcs.mavlink.services.answer import ACCEPTED, Answer, denied, rejected_for_now
@@ -18,6 +17,7 @@ from gcs.mavlink.services.mission_item import MissionItem, PlanType
 from gcs.mission.items import FARTHEST
 from gcs.mission.model import Mission
 from gcs.mission.route import Position, Route
+from gcs.serve.parameters import CRUISE_SPEED, SETTINGS
 from gcs.serve.plan_file import label, mission_of
 from gcs.serve.session import TeamSession
 
@@ -67,7 +67,8 @@ class TeamAircraft:
     def arm(self, now: float, force: bool = False) -> Answer:
         """Begin a flight; the vehicles are armed when the checks before take-off, never skipped, have passed."""
         if self.session.is_armed:
-            return ACCEPTED
+            ends = self.session.flight.stands_down
+            return rejected_for_now("Arming denied: it is being disarmed") if ends else ACCEPTED
         if (problem := self.arming_problem(now)) is not None:
             return rejected_for_now(f"Arming denied: {problem}")
         self.session.arm()
@@ -80,8 +81,8 @@ class TeamAircraft:
         session = self.session
         if not session.is_armed:
             return ACCEPTED
-        if session.flight.phase is not Phase.ARM:
-            return denied("Disarming denied: in the air" if session.in_air else "Disarming denied: not armed yet")
+        if session.in_air:
+            return denied("Disarming denied: in the air")
         session.disarm()
         return ACCEPTED
 
@@ -104,18 +105,17 @@ class TeamAircraft:
 
     def take_off(self, altitude: float, now: float) -> Answer:
         """Take off to ``altitude`` (m above mean sea level; NaN: the parameter's height above home), and hold there."""
-        session, system = self.session, self.base.system
+        session = self.session
         if not session.is_armed:
             return rejected_for_now("Takeoff denied: not armed")
-        if session.in_air or session.flight.may_take_off:
-            return rejected_for_now("Takeoff denied: it has taken off already")
+        if not session.may_begin:
+            return rejected_for_now(f"Takeoff denied: {self._begun}")
         height = altitude - self.base.home.altitude
         if math.isnan(height):
             height = self._parameters[TAKEOFF_ALTITUDE]
-        lowest = system.resting_altitude + system.guidance.navigator.ground_clearance
         if (problem := self._why_not((*session.pad, -height))) is not None:
             return denied(f"Takeoff denied: {problem}", 7)
-        session.take_off(max(height, lowest))
+        session.take_off(max(height, session.lowest))
         return ACCEPTED
 
     def start_mission(self, first: int, now: float) -> Answer:
@@ -158,17 +158,15 @@ class TeamAircraft:
         place = self._local(Place(*goal[:3]), here)
         if (problem := self._why_not(place)) is not None:
             return denied(f"Reposition denied: {problem}")
-        limit = self.base.system.motion.speed_max
-        if not (math.isnan(goal.speed) or 0.0 < goal.speed <= limit):
-            return denied(f"Reposition denied: {goal.speed:g} m/s, the team flies {limit:g} m/s at most", 1)
+        if not math.isnan(goal.speed) and (problem := self._wrong_speed(goal.speed)) is not None:
+            return denied(f"Reposition denied: {problem}", 1)
         session.go_to(place, None if math.isnan(goal.speed) else goal.speed)
         return ACCEPTED
 
     def change_speed(self, speed: float, now: float) -> Answer:
         """Fly with another speed (m/s) from now on."""
-        limit = self.base.system.motion.speed_max
-        if not 0.0 < speed <= limit:
-            return denied(f"Speed change denied: {speed:g} m/s is outside 0 .. {limit:g} m/s", 2)
+        if (problem := self._wrong_speed(speed)) is not None:
+            return denied(f"Speed change denied: {problem}", 2)
         self.session.change_speed(speed)
         return ACCEPTED
 
@@ -190,14 +188,19 @@ class TeamAircraft:
             return _NO_MISSION
         if session.in_air and not session.may_order:
             return self._refused("Mission")
-        if session.in_air and not isinstance(session.mission.reference, Route):
-            return denied("Mission denied: a curve begins on the ground")
-        if not session.in_air and session.flight.may_take_off:
-            return rejected_for_now("Mission denied: it has taken off already")
+        if not (session.in_air or session.may_begin):
+            return rejected_for_now(f"Mission denied: {self._begun if session.is_armed else 'not armed'}")
+        if (problem := session.why_unflyable(session.first, in_air=session.in_air)) is not None:
+            return denied(f"Mission denied: {problem}")
         if self._finished or not session.in_air:
             self._reached, self._finished = [], False
         session.fly_mission()
         return ACCEPTED
+
+    @property
+    def _begun(self) -> str:
+        """Why nothing can be begun while armed."""
+        return "it is being disarmed" if self.session.flight.stands_down else "it has taken off already"
 
     def _return(self) -> Answer:
         session = self.session
@@ -223,6 +226,11 @@ class TeamAircraft:
             reason = session.flight.reason or f"in phase {session.flight.phase.value}"
         return rejected_for_now(f"{what} denied: {reason}")
 
+    def _wrong_speed(self, speed: float) -> str | None:
+        """Return why a speed (m/s) is not flown: too fast, or so slow that it would not arrive; None: it is."""
+        lowest, limit = SETTINGS[CRUISE_SPEED].low, self.base.system.motion.speed_max
+        return None if lowest <= speed <= limit else f"{speed:g} m/s is outside {lowest:g} .. {limit:g} m/s"
+
     def _local(self, place: Place, here: Position) -> Position:
         """Return a place (NED, m); what is not given is as it is ``here``."""
         altitude = self.base.home.altitude - here[2] if math.isnan(place.altitude) else place.altitude
@@ -232,8 +240,7 @@ class TeamAircraft:
 
     def _why_not(self, place: Position) -> str | None:
         """Return why the payload may not be flown to a place; None: it may."""
-        system = self.base.system
-        lowest = system.resting_altitude + system.guidance.navigator.ground_clearance
+        lowest = self.session.lowest
         if not math.dist(place, (0.0, 0.0, 0.0)) <= FARTHEST:
             return f"farther than {FARTHEST:g} m from home"
         if -place[2] < lowest - 1e-3:
@@ -251,7 +258,7 @@ class TeamAircraft:
     def take_mission(self, items: Sequence[MissionItem], current: int, on_reached: Callable[[int], None]) -> Answer:
         """Have another mission, of which ``current`` is flown first; ``on_reached`` is called with each item done."""
         session = self.session
-        if session.flies_mission and session.in_air:
+        if session.flies_mission:
             if not session.is_paused:
                 return rejected_for_now("Mission refused: the one before is being flown; hold first")
             session.forget_mission()
@@ -304,6 +311,8 @@ class TeamAircraft:
         if session.in_air and session.flies_mission:
             if not session.may_order:
                 return self._refused("Mission item")
+            if (problem := session.why_unflyable(after, in_air=True)) is not None:
+                return denied(f"Mission item denied: {problem}")
             session.first = after
             session.fly_mission(anew=True)
         session.first = after
