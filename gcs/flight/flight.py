@@ -57,6 +57,8 @@ class Flight:
         """True if orders in flight have taken the place of the mission."""
         self.is_ready = False
         """True while the check before take-off is passed."""
+        self.stands_down = False
+        """True if it takes off no more, whatever legs are left."""
         self.time = 0.0
         """Team time of the last control step."""
         self.started = math.nan
@@ -202,6 +204,7 @@ class Flight:
         assert self.mission_trajectory is not None
         self.landing_place.waiting_since = math.inf
         guidance = self.system.guidance
+        guidance.speed_limit = math.inf  # of what was flown, which may have been paused
         followed, progress = guidance.stopping_trajectory(time, self.mission_trajectory.trajectory)
         change(followed, progress)
         guidance.restart(time, progress)
@@ -212,6 +215,11 @@ class Flight:
         """Fly ``mission`` with the next take-off, of the same system and in the same world."""
         self.mission, self.legs = mission, MissionLegs.of(mission)
         self.may_take_off = True
+        if not self.legs.takes_off:  # first what is done on the ground, disarmed
+            if self.phase is Phase.CHECK:
+                self._begin_standing(self.time)
+            elif self.phase is Phase.ARM:
+                self._disarm(self.time)
 
     def fly(self, legs: Iterator[Leg], speed: float) -> None:
         """Come to rest within the limits, then fly ``legs`` from there, none faster than ``speed`` (m/s).
@@ -225,12 +233,14 @@ class Flight:
         self._leave(self.time, lambda followed, progress: go_on(followed, progress, self.legs.flight(), speed))
 
     def stand_down(self) -> None:
-        """Stay on the ground, disarmed: what is left of the mission is not flown. Without effect in the air."""
-        if self.phase not in STANDING:
+        """On the ground take off no more: disarm what is armed, and end. Without effect in the air."""
+        if self.phase not in STANDING and self.phase is not Phase.CONNECT:
             return
-        self.legs, self.is_redirected = MissionLegs(iter(())), True
-        if self.phase in (Phase.CHECK, Phase.ARM, Phase.ON_GROUND):
+        self.stands_down = self.is_redirected = True
+        if self.phase is Phase.ARM:
             self._disarm(self.time)
+        elif self.phase not in (Phase.DISARM, Phase.SPOOL_DOWN):
+            self.phase = Phase.ENDED
 
     @property
     def passed(self) -> list[str]:
@@ -312,7 +322,7 @@ class Flight:
         if not self._sequence.done:
             return self._step_sequence(time, now)
         if not self.system.team.armed:
-            self._disarm(time)  # a vehicle has disarmed by itself
+            self.stand_down()  # a vehicle has disarmed by itself
             return False
         return True
 
@@ -328,7 +338,7 @@ class Flight:
 
     def _begin_standing(self, time: float) -> None:
         """Go on with the legs on the ground, where the mission has any; the next flight connects anew."""
-        if self.reason or self.legs.ended:
+        if self.reason or self.stands_down or self.legs.ended:
             self.phase = Phase.ENDED
             return
         self.control.stop_plans.clear()

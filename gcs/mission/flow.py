@@ -7,7 +7,7 @@ from itertools import islice
 from operator import itemgetter
 
 from gcs.mission.fence import Fence
-from gcs.mission.route import END, Circle, GroundLeg, Land, Leg, Position, Route, TakeOff, ends_on_ground
+from gcs.mission.route import END, TRIED_LEGS, Circle, GroundLeg, Land, Leg, Position, Route, TakeOff, ends_on_ground
 from gcs.mission.steps import (
     Climb,
     Descend,
@@ -16,14 +16,10 @@ from gcs.mission.steps import (
     Jump,
     PlacePayload,
     Return,
-    RouteError,
     Stay,
     Step,
     Turn,
 )
-
-TRIED_LEGS = 20_000
-"""So many legs are tried before the flight. Legs repeat after a lap; a file has at most 10 000 items."""
 
 WAYPOINTS = (Climb, Go, Turn, Stay, PlacePayload, Descend, Return)
 _FLOWN = Climb | Go | Turn | Stay | PlacePayload
@@ -39,10 +35,9 @@ def check_flow(route: Route, fence: Fence) -> tuple[list[str], list[str]]:
     flown = _reached(steps)
     if not any(isinstance(step, _FLOWN) for i, step in enumerate(steps) if i in flown):
         return ["mission: no waypoint is ever reached"], []
-    try:
-        legs = list(islice(route.legs(), TRIED_LEGS))
-    except RouteError as error:
-        return [f"{error.source}: {error.field}: {error.reason}"], []
+    if (problem := route.problem()) is not None:
+        return [problem], []
+    legs = list(islice(route.legs(), TRIED_LEGS))
     return list(_outside_fence(legs, fence)), list(_notes(route, flown, legs))
 
 

@@ -31,6 +31,8 @@ from gcs.mission.steps import (
 
 Position = tuple[float, float, float]
 
+TRIED_LEGS = 20_000
+"""So many legs are tried before the flight. Legs repeat after a lap; a file has at most 10 000 items."""
 END = "end of mission"
 """Source of what follows a mission that does not say how it ends."""
 
@@ -171,12 +173,18 @@ class Route:
         moved = (replace(s, target=s.target + 1) if isinstance(s, Jump) else s for s in self.steps)
         return replace(self, steps=(Jump(source, first + 1, None), *moved))
 
-    def first_lap(self, limit: int, start: Position | None = None) -> list[Leg]:
-        """Return up to ``limit`` legs; of an endless route those before an item is flown for the second time.
+    def problem(self, start: Position | None = None) -> str | None:
+        """Return why it cannot be flown from ``start``, as :meth:`legs` has it; None: it can."""
+        try:
+            for _ in islice(self.legs(start), TRIED_LEGS):
+                pass
+        except RouteError as error:
+            return f"{error.source}: {error.field}: {error.reason}"
+        return None
 
-        ``start`` as of :meth:`legs`.
-        """
-        legs = list(islice(self.legs(start), limit))
+    def first_lap(self, limit: int) -> list[Leg]:
+        """Return up to ``limit`` legs; of an endless route those before an item is flown for the second time."""
+        legs = list(islice(self.legs(), limit))
         if len(legs) < limit:
             return legs
         seen = set[str]()

@@ -18,7 +18,7 @@ from gcs.mavlink.services.mission_item import MissionItem, PlanType
 from gcs.mission.items import FARTHEST
 from gcs.mission.model import Mission
 from gcs.mission.route import Position, Route
-from gcs.serve.mission_start import begins_on_ground, why_not
+from gcs.serve.parameters import CRUISE_SPEED, SETTINGS
 from gcs.serve.plan_file import label, mission_of
 from gcs.serve.session import TeamSession
 
@@ -72,7 +72,8 @@ class TeamAircraft:
         if (problem := self.arming_problem(now)) is not None:
             return rejected_for_now(f"Arming denied: {problem}")
         if self.session.is_armed:
-            return ACCEPTED
+            ends = self.session.flight.stands_down
+            return rejected_for_now("Arming denied: it is being disarmed") if ends else ACCEPTED
         self.session.arm()
         if self.session.mode == px4.MODE_MISSION:  # chosen on the ground: arming begins it, as in PX4
             return self._begin_mission()
@@ -83,8 +84,8 @@ class TeamAircraft:
         session = self.session
         if not session.is_armed:
             return ACCEPTED
-        if session.flight.phase is not Phase.ARM and not session.is_at_stop:
-            return denied("Disarming denied: in the air" if session.in_air else "Disarming denied: not armed yet")
+        if session.in_air and not session.is_at_stop:
+            return denied("Disarming denied: in the air")
         session.disarm()
         return ACCEPTED
 
@@ -107,20 +108,19 @@ class TeamAircraft:
 
     def take_off(self, altitude: float, now: float) -> Answer:
         """Take off to ``altitude`` (m above mean sea level; NaN: the parameter's height above home), and hold there."""
-        session, system = self.session, self.base.system
+        session = self.session
         if not session.is_armed:
             return rejected_for_now("Takeoff denied: not armed")
         if session.is_at_stop:
             return rejected_for_now("Takeoff denied: the mission takes off by itself")
-        if session.in_air or session.flight.may_take_off:
-            return rejected_for_now("Takeoff denied: it has taken off already")
+        if not session.may_begin:
+            return rejected_for_now(f"Takeoff denied: {self._begun}")
         height = altitude - self.base.home.altitude
         if math.isnan(height):
             height = self._parameters[TAKEOFF_ALTITUDE]
-        lowest = system.resting_altitude + system.guidance.navigator.ground_clearance
         if (problem := self._why_not((*session.pad, -height))) is not None:
             return denied(f"Takeoff denied: {problem}", 7)
-        session.take_off(max(height, lowest))
+        session.take_off(max(height, session.lowest))
         return ACCEPTED
 
     def start_mission(self, first: int, now: float) -> Answer:
@@ -165,9 +165,8 @@ class TeamAircraft:
         place = self._local(Place(*goal[:3]), here)
         if (problem := self._why_not(place)) is not None:
             return denied(f"Reposition denied: {problem}")
-        limit = self.base.system.motion.speed_max
-        if not (math.isnan(goal.speed) or 0.0 < goal.speed <= limit):
-            return denied(f"Reposition denied: {goal.speed:g} m/s, the team flies {limit:g} m/s at most", 1)
+        if not math.isnan(goal.speed) and (problem := self._wrong_speed(goal.speed)) is not None:
+            return denied(f"Reposition denied: {problem}", 1)
         session.go_to(place, None if math.isnan(goal.speed) else goal.speed)
         return ACCEPTED
 
@@ -175,9 +174,8 @@ class TeamAircraft:
         """Fly with another speed (m/s) from now on."""
         if self.session.is_at_stop:
             return self._refused("Speed change")
-        limit = self.base.system.motion.speed_max
-        if not 0.0 < speed <= limit:
-            return denied(f"Speed change denied: {speed:g} m/s is outside 0 .. {limit:g} m/s", 2)
+        if (problem := self._wrong_speed(speed)) is not None:
+            return denied(f"Speed change denied: {problem}", 2)
         self.session.change_speed(speed)
         return ACCEPTED
 
@@ -201,20 +199,19 @@ class TeamAircraft:
             return ACCEPTED  # it goes on by itself
         if session.in_air and not session.may_order:
             return self._refused("Mission")
-        if session.in_air and not isinstance(session.mission.reference, Route):
-            return denied("Mission denied: a curve begins on the ground")
-        if not session.in_air and session.flight.may_take_off:
-            return rejected_for_now("Mission denied: it has taken off already")
-        if (problem := self._why_not_from(session.first)) is not None:
+        if not (session.in_air or session.may_begin):
+            return rejected_for_now(f"Mission denied: {self._begun if session.is_armed else 'not armed'}")
+        if (problem := session.why_unflyable(session.first, in_air=session.in_air)) is not None:
             return denied(f"Mission denied: {problem}")
-        route, is_connecting = session.mission.reference, session.flight.phase is Phase.CONNECT
-        on_ground = isinstance(route, Route) and not session.in_air and begins_on_ground(route, session.first)
-        if on_ground and not is_connecting:
-            return rejected_for_now("Mission denied: it begins on the ground, without rotors: disarm first")
         if self._finished or not session.in_air:
             self._reached, self._finished = [], False
         session.fly_mission()
         return ACCEPTED
+
+    @property
+    def _begun(self) -> str:
+        """Why nothing can be begun while armed."""
+        return "it is being disarmed" if self.session.flight.stands_down else "it has taken off already"
 
     def _return(self) -> Answer:
         session = self.session
@@ -248,6 +245,11 @@ class TeamAircraft:
             reason = session.flight.reason or f"in phase {session.flight.phase.value}"
         return rejected_for_now(f"{what} denied: {reason}")
 
+    def _wrong_speed(self, speed: float) -> str | None:
+        """Return why a speed (m/s) is not flown: too fast, or so slow that it would not arrive; None: it is."""
+        lowest, limit = SETTINGS[CRUISE_SPEED].low, self.base.system.motion.speed_max
+        return None if lowest <= speed <= limit else f"{speed:g} m/s is outside {lowest:g} .. {limit:g} m/s"
+
     def _local(self, place: Place, here: Position) -> Position:
         """Return a place (NED, m); what is not given is as it is ``here``."""
         altitude = self.base.home.altitude - here[2] if math.isnan(place.altitude) else place.altitude
@@ -257,23 +259,13 @@ class TeamAircraft:
 
     def _why_not(self, place: Position) -> str | None:
         """Return why the payload may not be flown to a place; None: it may."""
-        system = self.base.system
-        lowest = system.resting_altitude + system.guidance.navigator.ground_clearance
+        lowest = self.session.lowest
         if not math.dist(place, (0.0, 0.0, 0.0)) <= FARTHEST:
             return f"farther than {FARTHEST:g} m from home"
         if -place[2] < lowest - 1e-3:
             return f"{-place[2]:.1f} m above home is lower than {lowest:.1f} m"
         area = self.session.world.area
         return None if area is None or area.contains(np.array([place]))[0] else "outside the fence"
-
-    def _why_not_from(self, first: str) -> str | None:
-        session = self.session
-        assert session.mission is not None
-        if not isinstance(session.mission.reference, Route):
-            return None
-        return why_not(session.mission.reference, first, session.position if session.in_air else None)
-
-    # The mission
 
     @property
     def plans(self) -> dict[PlanType, Sequence[MissionItem]]:
@@ -335,11 +327,13 @@ class TeamAircraft:
             return denied(f"Mission item denied: after {self._labels[index]} nothing is flown")
         if session.is_at_stop:
             return self._refused("Mission item")
-        if (problem := self._why_not_from(after)) is not None:
+        if (problem := session.why_unflyable(after, in_air=session.in_air)) is not None:
             return denied(f"Mission item denied: {problem}")
         if session.in_air and session.flies_mission:
             if not session.may_order:
                 return self._refused("Mission item")
+            if (problem := session.why_unflyable(after, in_air=True)) is not None:
+                return denied(f"Mission item denied: {problem}")
             session.first = after
             session.fly_mission(anew=True)
         session.first = after

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from itertools import chain
 from typing import TYPE_CHECKING, Protocol
 
 from gcs.flight.alarms import Alarm
@@ -17,7 +18,6 @@ from gcs.mavlink import px4
 from gcs.mission.model import Lissajous, Mission
 from gcs.mission.route import FlyTo, HoldForever, Land, Leg, Position, Route
 from gcs.mission.steps import Climb, Place, Speed, Stay
-from gcs.serve.mission_start import beginning
 
 if TYPE_CHECKING:
     from gcs.config import SystemConfig
@@ -26,6 +26,8 @@ PREFLIGHT_DISARM = 10.0
 """s for which armed vehicles wait for a take-off, as COM_DISARM_PRFLT of PX4."""
 _RUN_DOWN = 2.0
 """s after disarming, for rotors and load to come to rest before the records of the flight are closed."""
+WAITING_ALTITUDE = 3.0
+"""m; of the take-off that a flight has until one is ordered. It is not flown."""
 _AT_REST = 0.1
 """m/s; below which the payload is at rest."""
 _THERE = 0.1
@@ -51,7 +53,9 @@ class TeamSession:
 
     def __init__(self, world: Mission, open_flight: Callable[[Mission, bool], OpenFlight]) -> None:
         """``open_flight`` opens a flight of a mission, with records or without."""
-        self.world = world
+        steps = (Climb("take-off", Place((0.0, 0.0), WAITING_ALTITUDE)), Stay("take-off", Place()))
+        resting = world.system.resting_altitude
+        self.world = replace(world, reference=Route(steps, world.system.motion.speed, resting))
         """System, home and obstacles of every flight, and the fence of the plans that were uploaded."""
         self._open_flight = open_flight
         self._opened = open_flight(world, False)
@@ -107,8 +111,17 @@ class TeamSession:
 
     @property
     def may_order(self) -> bool:
-        """True while the payload can be ordered elsewhere: in the air, before its landing, without a failsafe."""
-        return self.flight.phase in IN_AIR and self.flight.phase is not Phase.LAND and not self.flight.reason
+        """True while the payload can be ordered elsewhere: in the air, before its landing, without a failsafe.
+
+        Also where it was paused so late that it rests in its landing.
+        """
+        flight = self.flight
+        return flight.phase in IN_AIR and not flight.reason and (flight.phase is not Phase.LAND or self.is_paused)
+
+    @property
+    def may_begin(self) -> bool:
+        """True while a take-off can be ordered: armed, or about to be, and none was ordered yet."""
+        return self.is_armed and not (self.in_air or self.flight.may_take_off or self.flight.stands_down)
 
     @property
     def is_at_stop(self) -> bool:
@@ -156,6 +169,12 @@ class TeamSession:
         return north, east, down
 
     @property
+    def lowest(self) -> float:
+        """Least height (m above home) at which the payload is flown to a place."""
+        system = self.world.system
+        return system.resting_altitude + system.guidance.navigator.ground_clearance
+
+    @property
     def is_mission_done(self) -> bool:
         """True if the whole mission was flown, and at its end landed or held for good."""
         flight = self.flight
@@ -164,6 +183,14 @@ class TeamSession:
         if flight.phase in IN_AIR:
             return flight.phase is Phase.HOLD and flight.next_source is None
         return flight.legs.ended and flight.landings > 0 and not flight.reason
+
+    def why_unflyable(self, first: str, *, in_air: bool) -> str | None:
+        """Return why the mission cannot be begun at an item, or its beginning (empty), from here; None: it can."""
+        assert self.mission is not None
+        if not isinstance(route := self.mission.reference, Route):
+            return "a curve begins on the ground" if in_air else None
+        route = route.beginning_at(first) if first else route
+        return route.problem(self._above_ground if in_air else None)
 
     # Orders
 
@@ -201,7 +228,8 @@ class TeamSession:
         resumed = self._flies_mission and self.in_air and self.is_paused and not anew
         if resumed and self._wanted_speed > self._planned_speed:
             resumed, self.first = False, self.flight.next_source or self.first
-        route = beginning(route, self.first)
+        if self.first:
+            route = route.beginning_at(self.first)
         if self.speed is not None:
             route = replace(route, speed=self.speed)
         if not self.in_air:
@@ -209,7 +237,7 @@ class TeamSession:
         elif resumed:
             self._limit_speed()
         else:
-            self._fly(route.legs(self.position), route.speed)
+            self._fly(route.legs(self._above_ground), route.speed)
         self._flies_mission = True
         self._set_mode(px4.MODE_MISSION)
 
@@ -228,7 +256,7 @@ class TeamSession:
         """Land ``over`` a place (north, east), after a flight at the present altitude; None: where it is."""
         legs: list[Leg] = []
         if over is not None:
-            legs.append(FlyTo((*over, self.position[2]), self._cruise_speed(), "return"))
+            legs.append(FlyTo((*over, self._above_ground[2]), self._cruise_speed(), "return"))
         self._leave_mission([*legs, Land((0.0, 0.0, 0.0), "land")])
         self._set_mode(px4.MODE_LAND if over is None else px4.MODE_RETURN)
 
@@ -278,10 +306,19 @@ class TeamSession:
             self._flies_mission = False
         self._fly(iter(legs), max([self._cruise_speed(), *(leg.speed for leg in legs if isinstance(leg, FlyTo))]))
 
+    @property
+    def _above_ground(self) -> Position:
+        """Where the payload is, or, lower than it may be flown, above that."""
+        north, east, down = self.position
+        return north, east, min(down, -self.lowest)
+
     def _fly(self, legs: Iterator[Leg], speed: float) -> None:
+        """Fly ``legs``, none faster than ``speed`` (m/s); from too low for a level flight first straight up."""
+        first, up = next(legs), list[Leg]()
+        if self._above_ground != self.position and not isinstance(first, Land):
+            up.append(FlyTo(self._above_ground, self.world.system.motion.climb_speed, first.source))
         self._planned_speed = speed
-        self.flight.fly(legs, speed)
-        self.flight.system.guidance.speed_limit = math.inf
+        self.flight.fly(chain(up, (first,), legs), speed)
         self.changes += 1
 
     def _have_speed(self) -> None:

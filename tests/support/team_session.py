@@ -58,7 +58,7 @@ REFUSED_ON_GROUND = {
     "go-to": (reposition(*ASIDE), m.MAV_RESULT_TEMPORARILY_REJECTED, "Reposition denied: not in the air"),
     "landing": (LAND, m.MAV_RESULT_TEMPORARILY_REJECTED, "Land denied: not in the air"),
     "return": (RETURN, m.MAV_RESULT_TEMPORARILY_REJECTED, "Return denied: not in the air"),
-    "speed": (change_speed(9.0), m.MAV_RESULT_DENIED, "Speed change denied: 9 m/s is outside 0 .. 3 m/s"),
+    "speed": (change_speed(9.0), m.MAV_RESULT_DENIED, "Speed change denied: 9 m/s is outside 0.1 .. 3 m/s"),
 }  # fmt: skip
 """Orders, each with the result and the beginning of the reason."""
 REFUSED_IN_FLIGHT = {
@@ -66,7 +66,7 @@ REFUSED_IN_FLIGHT = {
     "outside": (reposition(20.0, 0.0, 4.0), m.MAV_RESULT_DENIED, "Reposition denied: outside the fence"),
     "too low": (reposition(3.0, 0.0, 0.1), m.MAV_RESULT_DENIED, "Reposition denied: 0.1 m above home is lower"),
     "too far": (reposition(9e4, 0.0, 4.0), m.MAV_RESULT_DENIED, "Reposition denied: farther than "),
-    "too fast": (reposition(*ASIDE, 9.0), m.MAV_RESULT_DENIED, "Reposition denied: 9 m/s, the team flies 3"),
+    "too fast": (reposition(*ASIDE, 9.0), m.MAV_RESULT_DENIED, "Reposition denied: 9 m/s is outside 0.1 .. 3 m/s"),
     "disarming": (DISARM, m.MAV_RESULT_DENIED, "Disarming denied: in the air"),
     "forced": (team_command(400, 0, px4.FORCE_ARM_DISARM), m.MAV_RESULT_DENIED, "Disarming denied: in the air"),
     "item": (team_command(m.MAV_CMD_DO_SET_MISSION_CURRENT, 9), m.MAV_RESULT_DENIED, "Mission item denied: 9 of 4"),
