@@ -327,8 +327,6 @@ class TeamAircraft:
             return denied(f"Mission item denied: after {self._labels[index]} nothing is flown")
         if session.is_at_stop:
             return self._refused("Mission item")
-        if (problem := session.why_unflyable(after, in_air=session.in_air)) is not None:
-            return denied(f"Mission item denied: {problem}")
         if session.in_air and session.flies_mission:
             if not session.may_order:
                 return self._refused("Mission item")

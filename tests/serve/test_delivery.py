@@ -163,5 +163,5 @@ def test_mission_that_begins_on_the_ground_disarms_the_team_first(tmp_path: Path
         team.until("LOCAL_POSITION_NED", lambda found: found.z < -0.8)
         result, text = team.answer(team_command(m.MAV_CMD_DO_SET_MISSION_CURRENT, 0))
         assert result == DENIED
-        assert text.startswith("Mission item denied: item 1 (DO_GRIPPER): unloading in the air")
+        assert text.startswith("Mission item denied: item 1 (DO_GRIPPER): command: unloading in the air")
     assert read_table(tmp_path / "run" / "cargo.csv")["gripper"].tolist() == [1]

@@ -51,7 +51,7 @@ def test_disarmed_team_stays_disarmed_and_can_be_armed_again(team: TeamBench) ->
     until_phase(team, Phase.ARM)
     team.run(1.0)
     team.order(DISARM)
-    assert team.answer(ARM) == (REJECTED, "Arming denied: it is being disarmed")
+    assert team.answer(ARM) == (REJECTED, "Arming denied: the flight before is ending")
     team.disarmed()
     seen = len(team.got("HEARTBEAT"))
     team.run(5.0)
