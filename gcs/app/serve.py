@@ -22,6 +22,7 @@ from gcs.drivers.interrupt import Interrupt
 from gcs.drivers.lockstep import Pace, run_in_lockstep
 from gcs.drivers.realtime import run_in_real_time
 from gcs.drivers.simulator import Simulator
+from gcs.flight.failsafe import Failsafe
 from gcs.flight.ground_station import GroundStation
 from gcs.mavlink.address import Address
 from gcs.mission.model import Mission
@@ -95,7 +96,9 @@ def serve(options: ServeOptions, world: Mission, vehicle_sim: ForkedProgram | No
             else:
                 _run_with(simulator, server, connection, interrupt, options, update)
         except KeyboardInterrupt:
-            LOG.error("interrupted twice: the vehicles land autonomously")
+            why = "interrupted twice: the vehicles land autonomously"
+            server.raise_failsafe(server.now, Failsafe.INTERRUPTED_TWICE, why)
+            LOG.error(why)
         interrupt.end_flight()
     if simulator is not None and (reason := simulator.last_lines):
         print(*reason, sep="\n", file=sys.stderr)

@@ -199,9 +199,7 @@ class TeamSession:
         north, east, _ = self.flight.system.preflight.payload.tolist()
         self.pad = north, east
         self._opened.close()
-        cargo = self.flight.cargo
-        self._opened = self._open_flight(self.world, True)
-        self.flight.cargo = cargo
+        self._open(recorded=True)
         self.flight.may_take_off = False
         self._alarms, self._cleared_until = 0, math.inf
         self.changes += 1
@@ -361,6 +359,13 @@ class TeamSession:
         self.first, self.speed, self._alarms = "", None, 0
         self._flies_mission = False
 
+    def _open(self, *, recorded: bool) -> None:
+        """Open a flight of the team as the one before has left it: its cargo, and where it stands."""
+        before = self.flight
+        self._opened = self._open_flight(self.world, recorded)
+        self.flight.cargo = before.cargo
+        self.flight.system.preflight.landed = before.system.preflight.landed or not math.isnan(before.takeoff_time)
+
     def _wait(self) -> None:
         self.flight.may_arm = self.flight.may_take_off = False
 
@@ -399,8 +404,7 @@ class TeamSession:
         if flight.may_arm:
             self.notices.append(said or "Flight ended")
         self.last_reason, self.run_down = flight.reason, -math.inf
-        self._opened = self._open_flight(self.world, False)
-        self.flight.cargo = flight.cargo
+        self._open(recorded=False)
         self._wait()
         self._reset()
         self._set_mode(px4.MODE_HOLD)
