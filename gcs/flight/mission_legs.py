@@ -44,8 +44,11 @@ class MissionLegs:
             yield leg
 
     def flight(self) -> Iterator[Leg]:
-        """Yield the legs from the next take-off to the landing that follows it; none of a curve."""
-        self._curve = False
+        """Return the legs from the next take-off to the landing that follows it; none of a curve."""
+        self._curve = False  # at once: the legs of a curve are never read
+        return self._to_landing()
+
+    def _to_landing(self) -> Iterator[Leg]:
         while (leg := self._next) is not None:
             self._next = None if isinstance(leg, HoldForever) else next(self._legs, None)
             yield leg

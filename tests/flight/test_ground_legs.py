@@ -14,6 +14,7 @@ from gcs.mavlink.requests import Requests
 from gcs.mavlink.settings import LinkSettings
 from gcs.mission.cargo import CargoState
 from gcs.mission.commands import GripperAction
+from gcs.mission.read import read_mission
 from gcs.mission.route import Gripper, Land, Stand, TakeOff
 
 HERE = (0.0, 0.0, -0.3)
@@ -110,3 +111,10 @@ def test_mission_is_taken_flight_by_flight(tmp_path):
     assert [type(leg).__name__ for leg in legs.flight()] == ["TakeOff", "FlyTo", "Land"]
     assert not legs.takes_off and not legs.ended and [leg.gripper for leg in legs.on_ground()] == [1]
     assert legs.ended
+
+
+def test_curve_is_flown_once():
+    legs = MissionLegs.of(read_mission("figure_eight"))
+    assert legs.takes_off and not legs.ended
+    legs.flight()  # of which a curve reads nothing
+    assert legs.ended and not legs.takes_off
