@@ -74,9 +74,6 @@ def serve(options: ServeOptions, world: Mission, vehicle_sim: ForkedProgram | No
         resources.callback(server.session.close)
         folder.keep()
         host, port = connection.socket.getsockname()
-        for name, address in (("team", (host, port)), *(("sends to", client) for client in options.clients)):
-            print(f"{name}: udp://{address[0]}:{address[1]}")
-        print(f"system {TEAM_SYSTEM}: ready; Ctrl-C lands the payload and ends", flush=True)
         logs: dict[GroundStation, FlightLog] = {}
 
         def update() -> None:
@@ -87,7 +84,10 @@ def serve(options: ServeOptions, world: Mission, vehicle_sim: ForkedProgram | No
             if server.session.is_armed:
                 logs[station].update()
 
-        interrupt.begin_flight()
+        interrupt.begin_flight()  # before anybody is told that it is ready, and may end it
+        for name, address in (("team", (host, port)), *(("sends to", client) for client in options.clients)):
+            print(f"{name}: udp://{address[0]}:{address[1]}")
+        print(f"system {TEAM_SYSTEM}: ready; Ctrl-C lands the payload and ends", flush=True)
         try:
             if simulator is None:
                 run_in_real_time(

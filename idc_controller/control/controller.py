@@ -134,7 +134,9 @@ class IntegratedDecisionController:
         ready = self._stopwatch()
         if links is not None:
             output = TrackingOutput(np.zeros(self.layout.inputs))
-            u = self._ground_controller.setpoints(links, stages)
+            # Before lift-off thrust along the reference aligns the links, and UAVs that turn after noise would be
+            # innovations of rates to an estimator for which the team still stands.
+            u = self._ground_controller.setpoints(links, stages) if touched_down else stages.u[0].copy()
             tracked = self._stopwatch()
         else:
             output = self.tracker.track(error, stages)
