@@ -103,3 +103,9 @@ NEWER: dict[int, type[NewerMessage]] = {
     if number not in mavlink.mavlink_map
 }
 """The classes by message id."""
+
+
+def message_number(name: str) -> int:
+    """Return the id of a message, of the dialect or of those here, by its name, in small letters or capitals."""
+    number: int | None = getattr(mavlink, f"MAVLINK_MSG_ID_{name.upper()}", None)
+    return int(globals()[name.upper()]) if number is None else number

@@ -46,6 +46,8 @@ class TeamAircraft:
         self._on_reached: Callable[[int], None] = lambda number: None
         self._reached: list[str] = []
         """Sources of the items that were reported."""
+        self._reported_at = math.nan
+        """Time of the control step after which that was (s, team time)."""
         self._flight, self._seen = session.flight, 0
         """The flight whose progress was reported, and how much of it."""
         self._finished = False
@@ -363,9 +365,10 @@ class TeamAircraft:
         """Report the items that were reached since the last call."""
         session = self.session
         if session.flight is not self._flight:
-            self._flight, self._seen = session.flight, 0
-        if not session.flies_mission:
-            return
+            self._flight, self._seen, self._reported_at = session.flight, 0, math.nan
+        if not session.flies_mission or session.flight.time == self._reported_at:
+            return  # nothing is reached between two control steps
+        self._reported_at = session.flight.time
         passed = session.flight.passed
         for source in passed[self._seen :]:
             if source in self._labels:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import fields
 from functools import partial
-from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -76,7 +75,8 @@ class TeamServer:
         self._intervals: dict[MessageKey, float] = {
             key: getattr(link.intervals, setting.name)
             for setting in fields(link.intervals)
-            if (key := (px4.AUTOPILOT_COMPONENT, _message_id(setting.name))) in {*self.builders, _MISSION_CURRENT}
+            if (key := (px4.AUTOPILOT_COMPONENT, newer_messages.message_number(setting.name)))
+            in {*self.builders, _MISSION_CURRENT}
         } | dict.fromkeys(
             [
                 (px4.AUTOPILOT_COMPONENT, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION),
@@ -201,11 +201,6 @@ class TeamServer:
         for text in session.notices:
             self._peers.send_statustext(text)
         session.notices.clear()
-
-
-def _message_id(name: str) -> int:
-    number: Any = getattr(mavlink, f"MAVLINK_MSG_ID_{name.upper()}", None)
-    return int(getattr(newer_messages, name.upper()) if number is None else number)
 
 
 def _is_of_vehicle(datagram: bytes) -> bool:

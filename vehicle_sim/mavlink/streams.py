@@ -56,7 +56,7 @@ def default_intervals(intervals: StreamIntervals, telemetry_interval: float) -> 
     return {
         # The settings have the names of the messages.
         **{
-            (_AUTOPILOT, message_number(setting.name)): getattr(intervals, setting.name)
+            (_AUTOPILOT, newer_messages.message_number(setting.name)): getattr(intervals, setting.name)
             for setting in fields(intervals)
         },
         (_PAYLOAD, mavlink.MAVLINK_MSG_ID_HEARTBEAT): intervals.heartbeat,
@@ -69,9 +69,3 @@ def default_intervals(intervals: StreamIntervals, telemetry_interval: float) -> 
         (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D): telemetry_interval,
         (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE): telemetry_interval,
     }
-
-
-def message_number(name: str) -> int:
-    """Return the id of a message by its name, in small letters or capitals."""
-    number: int | None = getattr(mavlink, f"MAVLINK_MSG_ID_{name.upper()}", None)
-    return getattr(newer_messages, name.upper()) if number is None else number
