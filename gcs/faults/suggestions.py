@@ -11,7 +11,7 @@ from gcs.faults.kinds import KINDS
 _WORD_ALIKE = 0.65
 _ALIKE = 0.85
 """Least ratio of letters in common: two of three in each word, or all but a few of the whole."""
-_COMMON = (
+COMMON = (
     "start",
     "start_phase",
     "start_offset",
@@ -49,7 +49,7 @@ def kind_meant(name: str) -> str | None:
 
 def key_meant(kind: str, key: str, given: Collection[str]) -> str | None:
     """Return the key of a fault of ``kind`` that an unknown ``key`` means; None: none of those not ``given``."""
-    found = {**_COMMON_ALIASES, **_selves(_COMMON)}
+    found = {**_COMMON_ALIASES, **_selves(COMMON)}
     for name, entry in _entries(kind).items():
         found |= {**dict.fromkeys(entry.get("aliases", ()), name), name: name}
     return _meant(key, {word: meant for word, meant in found.items() if meant not in given})

@@ -7,20 +7,10 @@ from gcs.config import SystemConfig, UnusableFile
 from gcs.config.toml_file import ParsedFile
 from gcs.config.validate import Key, Suggestions
 from gcs.errors import UnusableInput
+from gcs.faults.suggestions import COMMON
 from gcs.mission.model import Fault, Mission
 
-_KEYS = (
-    "kind",
-    "start",
-    "start_phase",
-    "start_offset",
-    "start_flight",
-    "duration",
-    "every",
-    "times",
-    "vehicles",
-    "direction",
-)
+_KEYS = ("kind", *COMMON)
 """Keys of every fault; all others are parameters of its kind."""
 
 
