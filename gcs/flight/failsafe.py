@@ -161,13 +161,6 @@ def _sequence_failed(phase: Phase) -> Condition:
     return condition
 
 
-def _states_unknown(system: System, moment: Moment) -> Trigger | None:
-    lost = system.estimator.health.isolation.uavs_without_position
-    if len(lost) < 2:
-        return None
-    return Trigger(f"the states of vehicles {_names(system.team.links[i] for i in lost)} cannot be estimated")
-
-
 def _all_telemetry_lost(system: System, moment: Moment) -> Trigger | None:
     timeout = system.settings.telemetry_timeout
     for link in system.team.links:
@@ -197,13 +190,22 @@ def _offboard_left(system: System, moment: Moment) -> Trigger | None:
 
 
 def _telemetry_incomplete(system: System, moment: Moment) -> Trigger | None:
-    # The estimator can do without the attitude or the position of one vehicle, but not of several.
-    links, timeout = system.team.links, system.settings.telemetry_timeout
-    partial = [i for i, link in enumerate(links) if moment.now - link.complete_telemetry_received_at > timeout]
-    if len(partial) < 2:
+    links, since = system.team.links, moment.now - system.settings.telemetry_timeout
+    partial = [i for i, link in enumerate(links) if link.complete_telemetry_received_at < since]
+    if len(partial) < 2 or all(links[i].attitude_received_at >= since for i in partial):
         return None
     names = _names(links[i] for i in partial)
+    timeout = system.settings.telemetry_timeout
     return Trigger(f"vehicles {names} do not send all telemetry for {timeout:g} s", tuple(partial))
+
+
+def _positions_lost(system: System, moment: Moment) -> Trigger | None:
+    links, since = system.team.links, moment.now - system.settings.telemetry_timeout
+    isolated = system.estimator.health.isolation.uavs_without_position
+    unknown = [i for i, link in enumerate(links) if i in isolated or link.position_received_at < since]
+    if len(unknown) < 2:
+        return None
+    return Trigger(f"the positions of vehicles {_names(links[i] for i in unknown)} are not known", tuple(unknown))
 
 
 def _data_link_lost(system: System, moment: Moment) -> Trigger | None:
@@ -390,8 +392,6 @@ class Failsafe(AlarmCode):
     LANDING_UNCONFIRMED = (Check.COMMAND, _sequence_failed(Phase.AUTONOMOUS_LANDING), Reaction.END_CONTROL,
         "locate the vehicles; stay clear",
         "not all vehicles have reported that they have landed within {landing_timeout:g} s")
-    STATES_UNKNOWN = (Check.LINK, _states_unknown, Reaction.AUTONOMOUS_LANDING, "check their sensors",
-        "position and attitude of two or more vehicles cannot be estimated")
     ALL_TELEMETRY_LOST = (Check.LINK, _all_telemetry_lost, Reaction.AUTONOMOUS_LANDING,
         "check the ground's telemetry radio",
         "no vehicle has sent telemetry for {telemetry_timeout} s")
@@ -406,7 +406,10 @@ class Failsafe(AlarmCode):
     OFFBOARD_LEFT = (Check.LINK, _offboard_left, Reaction.AUTONOMOUS_LANDING, "act on its STATUSTEXT",
         "a vehicle no longer flies the ground's set-points")
     TELEMETRY_INCOMPLETE = (Check.LINK, _telemetry_incomplete, Reaction.AUTONOMOUS_LANDING, "check their sensors",
-        "two or more vehicles have sent no position or no attitude for {telemetry_timeout} s")
+        "two or more vehicles have sent no attitude or no position for {telemetry_timeout} s, one at least no attitude")
+    POSITIONS_LOST = (Check.LINK, _positions_lost, Reaction.BRAKE_AND_LAND, "check their navigation",
+        "two or more vehicles have sent no position for {telemetry_timeout} s, or position and velocity of them are "
+        "isolated; their links are then known by attitudes, set-points and the payload's motion")
     DATA_LINK_LOST = (Check.STEP, _data_link_lost, Reaction.END_CONTROL, "stay clear until the vehicles have landed",
         "no message of any vehicle for {data_link_timeout:g} s, once the descent has been commanded")
     CONTROL_OVERRUN = (Check.STEP, _control_overrun, Reaction.AUTONOMOUS_LANDING,

@@ -13,7 +13,7 @@ from idc_controller.estimation.health.noise_adaptation import NoiseAdaptation, R
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from idc_controller.estimation.settings import NoiseAdaptationSettings
 
-KEYS = tuple(range(10))
+KEYS = tuple((source, kind) for source in (PAYLOAD, 0, 1, 2, 3) for kind in (Position, Attitude))
 SIZES = np.full(10, 5)
 PAYLOAD_ROWS = np.arange(50) < 10
 
@@ -46,6 +46,26 @@ def test_process_level_rises_for_correlated_innovations(of_payload):
     adaptation = adapted(random.standard_normal((200, 50)) + pushed)
     assert adaptation.level == NoiseAdaptationSettings().process_levels
     assert adaptation.measurement_scale == 1.0
+
+
+@pytest.mark.parametrize(("missing", "rises"), [((), True), ((2,), True), ((1, 2), False), ((0, 1, 2, 3), False)])
+def test_process_level_rises_only_with_the_positions_of_all_uavs_but_one(missing, rises):
+    keys = tuple(key for key in KEYS if key not in {(i, Position) for i in missing})
+    sizes = np.full(len(keys), 5)
+    adaptation, rows = NoiseAdaptation(3), np.ones(sizes.sum(), dtype=bool)
+    pushed = np.random.default_rng(5).standard_normal((100, rows.size)) + 1.0
+    for k, normalised in enumerate(pushed):
+        adaptation.learn(0.04 * k, keys, normalised, np.ones(len(keys)), rows, np.arange(rows.size) < 10)
+    assert (adaptation.level > 0) is rises
+
+
+def test_process_level_falls_again_without_positions():
+    pushed = np.random.default_rng(6).standard_normal((100, 50)) + 1.0
+    adaptation, attitudes = adapted(pushed), tuple(key for key in KEYS if key[1] is Attitude)
+    rows = np.ones(25, dtype=bool)
+    for k in range(100):
+        adaptation.learn(4.0 + 0.04 * k, attitudes, np.ones(25), np.ones(5), rows, np.arange(25) < 5)
+    assert adaptation.level == 0
 
 
 def test_scales_return_to_one_after_disturbance():

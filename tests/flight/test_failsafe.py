@@ -32,7 +32,7 @@ DOCS = Path(__file__).parents[2] / "docs"
 PAGE, SETTINGS = DOCS / "failsafes.md", DOCS / "settings.md"
 
 
-def link(number, *, age=0.0, attitude_age=0.0, latency=0.0, loss=0.0, answer_age=0.0, armed=True, offboard=True):
+def link(number, *, age=0.0, attitude_age=0.0, position_age=0.0, latency=0.0, loss=0.0, answer_age=0.0, armed=True, offboard=True):
     """Link of a vehicle at ground time 100 s."""
     clock = SimpleNamespace(
         delay=latency, round_trip_max=math.inf, least_delay=lambda window, now: 0.0, answered_at=100.0 - answer_age
@@ -42,7 +42,8 @@ def link(number, *, age=0.0, attitude_age=0.0, latency=0.0, loss=0.0, answer_age
     )
     return SimpleNamespace(
         system_id=number, telemetry_received_at=100.0 - age,
-        complete_telemetry_received_at=100.0 - max(age, attitude_age), received_at=100.0 - age,
+        attitude_received_at=100.0 - max(age, attitude_age), position_received_at=100.0 - max(age, position_age),
+        complete_telemetry_received_at=100.0 - max(age, attitude_age, position_age), received_at=100.0 - age,
         clock=clock, setpoints=SimpleNamespace(loss=loss), status=status, address=("10.0.0.7", number),
         conflict=AddressConflict(),
     )  # fmt: skip
@@ -106,6 +107,14 @@ def test_healthy_links_raise_no_failsafe():
             [link(1, attitude_age=0.5), link(2), link(3, attitude_age=0.5)],
             Failsafe.TELEMETRY_INCOMPLETE, "vehicles 1 and 3 do not send all telemetry",
         ),
+        (
+            [link(1, attitude_age=0.5), link(2), link(3, position_age=0.5)],
+            Failsafe.TELEMETRY_INCOMPLETE, "vehicles 1 and 3 do not send all telemetry",
+        ),
+        (
+            [link(1, position_age=0.5), link(2), link(3, position_age=0.5)],
+            Failsafe.POSITIONS_LOST, "the positions of vehicles 1 and 3 are not known",
+        ),
     ],
 )  # fmt: skip
 def test_link_failsafe_names_vehicle_value_and_limit(links, failsafe, reason):
@@ -114,9 +123,12 @@ def test_link_failsafe_names_vehicle_value_and_limit(links, failsafe, reason):
     assert trigger.reason.startswith(reason)
 
 
-@pytest.mark.parametrize(("lost", "failsafe"), [((1,), None), ((0, 1), Failsafe.STATES_UNKNOWN)])
-def test_states_of_two_vehicles_unknown_is_a_failsafe(lost, failsafe):
-    found = evaluated(state(link(1), link(2), lost=lost))
+@pytest.mark.parametrize(
+    ("isolated", "silent", "failsafe"),
+    [((1,), False, None), ((0, 1), False, Failsafe.POSITIONS_LOST), ((1,), True, Failsafe.POSITIONS_LOST)],
+)
+def test_positions_of_two_vehicles_silent_or_isolated_are_lost(isolated, silent, failsafe):
+    found = evaluated(state(link(1, position_age=0.5 if silent else 0.0), link(2), lost=isolated))
     assert (found and found[0]) is failsafe
 
 

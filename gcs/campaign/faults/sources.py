@@ -30,7 +30,7 @@ _CODES: dict[tuple[str, ...], str] = {
     (CLOCK,): "clock_error",
     (GROUND,): "control_overrun",
     (NAVIGATION,): "stuck_sensor channel_isolated inconsistent_state measurements_rejected innovation_bias "
-    "innovation_noise sensor_noise states_unknown telemetry_incomplete attitude_wrong attitude_misaligned",
+    "innovation_noise sensor_noise positions_lost telemetry_incomplete attitude_wrong attitude_misaligned",
     (RANGE_SENSOR,): "range_sensor_failed range_sensor_silent range_sensor_displaced obstacle_sensing_lost",
     (SYSTEM_ID,): "id_swap duplicate_system_id",
     (FORCE,): "covariance_reset disturbance_force process_noise plan_deviation_exceeded wind_exceeded unloading_failed",

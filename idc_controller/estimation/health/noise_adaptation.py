@@ -3,6 +3,9 @@
 Innovations normalised by their covariance have variance 1 and are uncorrelated in time. Where most are larger without
 correlation, the sensors are noisier than assumed; where they keep pointing the same way, forces change faster than
 assumed (gusts, a load that is lost).
+
+The process noise is that of all forces. Without the positions of several UAVs only the payload shows forces, not which:
+with more noise the links would be estimated after the noise of its measurements. Then it remains as assumed.
 """
 
 from __future__ import annotations
@@ -17,7 +20,7 @@ import numpy as np
 from idc_controller.arrays import Array, Mask
 from idc_controller.estimation.kalman_filter import Innovation
 from idc_controller.estimation.measurement_model import ObservationStack
-from idc_controller.estimation.measurements import PAYLOAD, SensorKey
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position, SensorKey
 from idc_controller.estimation.settings import NoiseAdaptationSettings
 from idc_controller.estimation.update_kernels import gated, mean_products
 
@@ -73,7 +76,9 @@ class NoiseAdaptation:
         self.level = 0
         """Level of the forces' process noise, 0 to ``process_levels``."""
         self._time = -np.inf
-        self._keys: Sequence[object] = ()
+        self._keys: Sequence[SensorKey] = ()
+        self._shows_forces = True
+        """Whether the measurements of these keys tell the forces on the UAVs from each other."""
         self._last = np.zeros(0)
         self._correlation = 0.0, 0.0
         """Mean correlation of the innovations of the payload unit and of the UAVs."""
@@ -122,7 +127,7 @@ class NoiseAdaptation:
         return Reaction.NOISE_INFLATION
 
     def learn(
-        self, time: float, keys: Sequence[object], normalised: Array, mean_squares: Array,
+        self, time: float, keys: Sequence[SensorKey], normalised: Array, mean_squares: Array,
         accepted: Mask, of_payload: Mask,
     ) -> None:  # fmt: skip
         """Learn from the K measurements of one moment.
@@ -145,7 +150,9 @@ class NoiseAdaptation:
         elif median < 1.0:
             self.measurement_scale = max(self.measurement_scale * s.decay, 1.0)
         if self._follows(time, keys, normalised):
-            products = mean_products(normalised, self._last, accepted, of_payload)
+            products = (0.0, 0.0)
+            if self._shows_forces:
+                products = mean_products(normalised, self._last, accepted, of_payload)
             self._correlation = (
                 self._mean_correlation(self._correlation[0], products[0]),
                 self._mean_correlation(self._correlation[1], products[1]),
@@ -156,7 +163,9 @@ class NoiseAdaptation:
                 self.level, self._since_change = self.level + 1, 0
             elif self._since_change > s.dwell and correlation < s.correlation_fall and self.level:
                 self.level, self._since_change = self.level - 1, 0
-        self._time, self._keys, self._last = time, keys, normalised
+        if keys != self._keys:
+            self._keys, self._shows_forces = keys, _without_position(keys) < 2
+        self._time, self._last = time, normalised
 
     def _mean_correlation(self, mean: float, product: float) -> float:
         """Return the running ``mean`` with the mean ``product`` of one update; nan: it has none."""
@@ -165,7 +174,7 @@ class NoiseAdaptation:
             return mean
         return mean + s.correlation_share * (min(max(product, -s.correlation_max), s.correlation_max) - mean)
 
-    def _persists(self, time: float, keys: Sequence[object], normalised: Array) -> bool:
+    def _persists(self, time: float, keys: Sequence[SensorKey], normalised: Array) -> bool:
         """Return whether the innovation (m,) points where the last one pointed."""
         if not self._follows(time, keys, normalised):
             return False
@@ -173,7 +182,13 @@ class NoiseAdaptation:
         limit = self._settings.persistent_cosine
         return product > limit * float(np.linalg.norm(normalised) * np.linalg.norm(self._last))
 
-    def _follows(self, time: float, keys: Sequence[object], normalised: Array) -> bool:
+    def _follows(self, time: float, keys: Sequence[SensorKey], normalised: Array) -> bool:
         return (
             keys == self._keys and len(normalised) == len(self._last) and 0.0 < time - self._time <= self._settings.gap
         )
+
+
+def _without_position(keys: Sequence[SensorKey]) -> int:
+    """Return of how many UAVs there is an attitude, but no position."""
+    attitudes = {source for source, kind in keys if kind is Attitude and source != PAYLOAD}
+    return len(attitudes.difference(source for source, kind in keys if kind is Position))
