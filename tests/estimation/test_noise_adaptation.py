@@ -59,13 +59,14 @@ def test_process_level_rises_only_with_the_positions_of_all_uavs_but_one(missing
     assert (adaptation.level > 0) is rises
 
 
-def test_process_level_falls_again_without_positions():
+def test_process_level_falls_at_once_when_positions_are_missing_for_longer_than_the_gap():
     pushed = np.random.default_rng(6).standard_normal((100, 50)) + 1.0
     adaptation, attitudes = adapted(pushed), tuple(key for key in KEYS if key[1] is Attitude)
-    rows = np.ones(25, dtype=bool)
-    for k in range(100):
-        adaptation.learn(4.0 + 0.04 * k, attitudes, np.ones(25), np.ones(5), rows, np.arange(25) < 5)
-    assert adaptation.level == 0
+    rows, levels, gap = np.ones(25, dtype=bool), [], NoiseAdaptationSettings().gap
+    for k in range(1, 11):
+        adaptation.learn(3.96 + 0.03 * k, attitudes, np.ones(25), np.ones(5), rows, np.arange(25) < 5)
+        levels.append((0.03 * k > gap, adaptation.level))
+    assert all((level == 0) is missing for missing, level in levels)
 
 
 def test_scales_return_to_one_after_disturbance():

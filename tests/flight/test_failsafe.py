@@ -32,7 +32,10 @@ DOCS = Path(__file__).parents[2] / "docs"
 PAGE, SETTINGS = DOCS / "failsafes.md", DOCS / "settings.md"
 
 
-def link(number, *, age=0.0, attitude_age=0.0, position_age=0.0, latency=0.0, loss=0.0, answer_age=0.0, armed=True, offboard=True):
+def link(
+    number, *, age=0.0, attitude_age=0.0, position_age=0.0, latency=0.0, loss=0.0, answer_age=0.0, armed=True,
+    offboard=True,
+):  # fmt: skip
     """Link of a vehicle at ground time 100 s."""
     clock = SimpleNamespace(
         delay=latency, round_trip_max=math.inf, least_delay=lambda window, now: 0.0, answered_at=100.0 - answer_age

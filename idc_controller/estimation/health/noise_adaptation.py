@@ -77,8 +77,8 @@ class NoiseAdaptation:
         """Level of the forces' process noise, 0 to ``process_levels``."""
         self._time = -np.inf
         self._keys: Sequence[SensorKey] = ()
-        self._shows_forces = True
-        """Whether the measurements of these keys tell the forces on the UAVs from each other."""
+        self._forces_shown = -np.inf
+        """Time of the last measurements that tell the forces on the UAVs from each other."""
         self._last = np.zeros(0)
         self._correlation = 0.0, 0.0
         """Mean correlation of the innovations of the payload unit and of the UAVs."""
@@ -150,9 +150,7 @@ class NoiseAdaptation:
         elif median < 1.0:
             self.measurement_scale = max(self.measurement_scale * s.decay, 1.0)
         if self._follows(time, keys, normalised):
-            products = (0.0, 0.0)
-            if self._shows_forces:
-                products = mean_products(normalised, self._last, accepted, of_payload)
+            products = mean_products(normalised, self._last, accepted, of_payload)
             self._correlation = (
                 self._mean_correlation(self._correlation[0], products[0]),
                 self._mean_correlation(self._correlation[1], products[1]),
@@ -163,9 +161,11 @@ class NoiseAdaptation:
                 self.level, self._since_change = self.level + 1, 0
             elif self._since_change > s.dwell and correlation < s.correlation_fall and self.level:
                 self.level, self._since_change = self.level - 1, 0
-        if keys != self._keys:
-            self._keys, self._shows_forces = keys, _without_position(keys) < 2
-        self._time, self._last = time, normalised
+        if _without_position(keys) < 2:
+            self._forces_shown = time
+        elif time - self._forces_shown > s.gap:
+            self.level, self._correlation = 0, (0.0, 0.0)
+        self._time, self._keys, self._last = time, keys, normalised
 
     def _mean_correlation(self, mean: float, product: float) -> float:
         """Return the running ``mean`` with the mean ``product`` of one update; nan: it has none."""
