@@ -1,4 +1,4 @@
-"""A free vehicle's failsafes, as PX4 has them without a remote control; ``docs/architecture.md`` mirrors the table."""
+"""A free vehicle's failsafes, as PX4 has them without a remote control; ``docs/failsafes.md`` is made from it."""
 
 from gcs.mavlink import px4
 from vehicle_sim.autopilot.failsafe import OFFBOARD_LOSS_ON_GROUND, Failsafe, by_cause, setpoints_lost
@@ -105,10 +105,30 @@ def _react_to_link_loss(state: FreeFlightState, now: float) -> None:
 
 
 FAILSAFES: tuple[Failsafe[FreeFlightState], ...] = (
-    Failsafe("position_loss", names.POSITION_LOSS, _position_lost, _in_flight, _land, "Position lost: descending"),
-    Failsafe("fence_breach", names.FENCE_ACTION, _fence_breached, _in_flight, _react_to_breach, ""),
+    Failsafe(
+        "position_loss",
+        "in the air, flown by position, which repeats itself while the vehicle moves",
+        "LAND",
+        names.POSITION_LOSS,
+        _position_lost,
+        _in_flight,
+        _land,
+        "Position lost: descending",
+    ),
+    Failsafe(
+        "fence_breach",
+        "in the air, has left what the fence allows; not landing, nor returning where that is the action",
+        "by the parameter",
+        names.FENCE_ACTION,
+        _fence_breached,
+        _in_flight,
+        _react_to_breach,
+        "",
+    ),
     Failsafe(
         "offboard_loss",
+        "OFFBOARD in the air, no set-point for that time",
+        f"brake and hold; ends when two set-points arrive within `{px4.PARAM_SETPOINT_LOSS}`",
         px4.PARAM_SETPOINT_LOSS,
         setpoints_lost,
         _in_flight,
@@ -118,6 +138,8 @@ FAILSAFES: tuple[Failsafe[FreeFlightState], ...] = (
     *OFFBOARD_LOSS_ON_GROUND,
     Failsafe(
         "offboard_still_lost",
+        "in that hold for that time",
+        "return to home and land",
         names.FAILSAFE_DELAY,
         _hold_is_over,
         _in_flight,
@@ -126,6 +148,8 @@ FAILSAFES: tuple[Failsafe[FreeFlightState], ...] = (
     ),
     Failsafe(
         "data_link_loss",
+        f"in the air, neither returning nor landing, no HEARTBEAT of a ground station for `{px4.PARAM_LINK_LOSS}`",
+        "by the parameter",
         names.LINK_LOSS_ACTION,
         _data_link_lost,
         _in_flight,
