@@ -104,8 +104,8 @@ table `autopilot.failsafe`. A vehicle in failsafe reports it in its HEARTBEAT (`
 ## Failsafes of a free vehicle
 
 Of a vehicle without a payload (`vehicle_sim/autopilot/free/failsafe.py`): what PX4 does without a remote control. With
-`{names.LINK_LOSS_ACTION}` 0, the default, silence of all grounds has no effect; 1 holds, 2 returns, 3 lands. Only the
-HEARTBEATs of ground stations (`MAV_TYPE_GCS`) count, and with an action a vehicle is not armed without them.
+`{px4.PARAM_LINK_LOSS_ACTION}` 0, the default, silence of all grounds has no effect; 1 holds, 2 returns, 3 lands. Only
+the HEARTBEATs of ground stations (`MAV_TYPE_GCS`) count, and with an action a vehicle is not armed without them.
 `{names.FENCE_ACTION}` 0 does nothing, 1 warns, 2 holds, 3 returns, 5 lands. Without a position a vehicle brakes and
 descends by dead reckoning from its accelerometer and attitude, and refuses modes that need a position; attitude
 set-points of OFFBOARD do not.

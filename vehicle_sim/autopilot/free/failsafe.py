@@ -6,8 +6,6 @@ from vehicle_sim.autopilot.free import parameters as names
 from vehicle_sim.autopilot.free.modes import return_home
 from vehicle_sim.autopilot.free.state import FENCE_HOLD, FENCE_RETURN, FENCE_WARNING, FreeFlightState
 
-_NOTHING, _HOLD, _RETURN = 0, 1, 2  # values of NAV_DLL_ACT; any other: land
-
 
 def _in_flight(state: FreeFlightState) -> bool:
     return state.armed and state.land.in_air
@@ -85,7 +83,7 @@ def _react_to_breach(state: FreeFlightState, now: float) -> None:
 def is_data_link_lost(state: FreeFlightState, now: float) -> bool:
     """Return True if no ground station sends its HEARTBEAT, and the vehicle is to react to that."""
     return (
-        state.parameters[names.LINK_LOSS_ACTION] != _NOTHING
+        state.parameters[px4.PARAM_LINK_LOSS_ACTION] != px4.LINK_LOSS_NOTHING
         and now - state.link_time > state.parameters[px4.PARAM_LINK_LOSS]
     )
 
@@ -95,10 +93,10 @@ def _data_link_lost(state: FreeFlightState, now: float) -> bool:
 
 
 def _react_to_link_loss(state: FreeFlightState, now: float) -> None:
-    action = state.parameters[names.LINK_LOSS_ACTION]
-    if action == _HOLD:
+    action = state.parameters[px4.PARAM_LINK_LOSS_ACTION]
+    if action == px4.LINK_LOSS_HOLD:
         _hold(state, now)
-    elif action == _RETURN:
+    elif action == px4.LINK_LOSS_RETURN:
         _return(state, now)
     else:
         _land(state, now)
@@ -150,7 +148,7 @@ FAILSAFES: tuple[Failsafe[FreeFlightState], ...] = (
         "data_link_loss",
         f"in the air, neither returning nor landing, no HEARTBEAT of a ground station for `{px4.PARAM_LINK_LOSS}`",
         "by the parameter",
-        names.LINK_LOSS_ACTION,
+        px4.PARAM_LINK_LOSS_ACTION,
         _data_link_lost,
         _in_flight,
         _react_to_link_loss,
