@@ -18,7 +18,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help install fly test test-fast test-long test-lowest test-numerics release golden golden-renew page
 .PHONY: claims claims-all claims-write fault-tables anew benchmark benchmark-campaign benchmark-check benchmark-view
-.PHONY: benchmark-flood docs pictures clean
+.PHONY: benchmark-flood process-faults docs pictures clean
 
 help:
 	@echo "make fly          fly $(MISSION) with a simulated swarm (MISSION=... for another one)"
@@ -40,6 +40,7 @@ help:
 	@echo "make benchmark-campaign  throughput of parallel flights against a single one's"
 	@echo "make benchmark-view   CPU cost of a flight with its live view against that without"
 	@echo "make benchmark-flood  a vehicle's telemetry while another vehicle's port is flooded"
+	@echo "make process-faults   flights in real time of which a process is killed or suspended"
 	@echo "make docs         write docs/settings.md, failsafes.md, autopilots.md, services.md and NOTICE from what they are about"
 	@echo "make pictures     fly, film and photograph the pictures of README.md (needs Chromium; about 6 min of CPU)"
 	@echo "make page         bundle the scripts of the report page anew (needs node and npm)"
@@ -114,6 +115,10 @@ benchmark-view: $(COMPILED)
 # OPTIONS: --rate N, --seconds S, the names of floods.
 benchmark-flood: $(COMPILED)
 	$(VENV)/bin/python tests/benchmarks/flood.py $(OPTIONS)
+
+# OPTIONS: --speed X, --seed S, the names of faults.
+process-faults: $(COMPILED)
+	$(VENV)/bin/python tests/benchmarks/process_faults.py $(OPTIONS)
 
 benchmark-check: $(COMPILED)
 	$(VENV)/bin/python tests/benchmarks/check.py --base $(BASE)

@@ -266,8 +266,9 @@ class Team:
     def take_off(self, height: float = 3.0) -> None:
         """Arm, take off to ``height`` above home (m), and hold there."""
         self._ready()
-        self._order(lambda: self._aircraft.arm(self.time))
-        self._order(lambda: self._aircraft.take_off(height + self._aircraft.base.home.altitude, self.time))
+        with self._drive.lock:  # armed, it is disarmed again where the take-off is late
+            self._order(lambda: self._aircraft.arm(self.time))
+            self._order(lambda: self._aircraft.take_off(height + self._aircraft.base.home.altitude, self.time))
 
     def pause(self) -> None:
         """Come to rest on the way, and hold."""

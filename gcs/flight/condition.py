@@ -17,10 +17,14 @@ from gcs.flight.plan_monitor import ImpactMonitor, PlanMonitor
 from gcs.flight.preflight import Preflight
 from gcs.flight.team import Team
 from gcs.flight.team_clock import StepIntervals
+from gcs.mavlink.vehicle_link import VehicleLink
+from idc_controller.arrays import Array
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.measurements import Estimate
+from idc_controller.geometry.formation import Formation
 from idc_controller.guidance.progress import Guidance
 from idc_controller.perception.obstacle_map import ObstacleMap
+from idc_controller.safety.separation import Obstruction, obstruction
 from idc_controller.trajectory.trajectory import Trajectory
 
 
@@ -94,6 +98,10 @@ class System:
     landing_place: LandingPlace | None = None
     """None: it is not watched."""
 
+    def obstruction(self, time: float, place: Array, within: float) -> Obstruction | None:
+        """Return what is nearer than ``within`` (m) to the formation at rest at ``place`` (3,), by the obstacle map."""
+        return obstruction(Formation(self.team.parameters), self.obstacle_map, time, place, within)
+
 
 class Moment(NamedTuple):
     """The moment of the evaluation; times in s, ``time`` the team's, ``now`` the ground's."""
@@ -120,3 +128,15 @@ class Trigger:
 
 
 Condition = Callable[[System, Moment], Trigger | None]
+
+
+def of_a_vehicle(problem: Callable[[VehicleLink], str]) -> Condition:
+    """Return the condition that a vehicle has a ``problem``, the text that follows its name; the first one counts."""
+
+    def condition(system: System, moment: Moment) -> Trigger | None:
+        for i, link in enumerate(system.team.links):
+            if text := problem(link):
+                return Trigger(f"vehicle {link.system_id} {text}", (i,))
+        return None
+
+    return condition

@@ -31,12 +31,12 @@ PARAM_ONBOARD_RATE = "CLFT_LOOP_RATE"  #: Hz, integer, the onboard loop, read-on
 PARAM_LAND_DELAY = "CLFT_LAND_DELAY"  #: s from holding after a loss to descending
 PARAM_SETPOINT_LOSS = "COM_OF_LOSS_T"  #: s without set-points until the vehicle brakes
 PARAM_LINK_LOSS = "COM_DL_LOSS_T"  #: s, integer, without any ground until a holding vehicle descends
-PARAM_LINK_LOSS_ACTION = "NAV_DLL_ACT"  #: integer, LINK_LOSS_NOTHING or LINK_LOSS_LAND
+PARAM_LINK_LOSS_ACTION = "NAV_DLL_ACT"  #: integer, one of LINK_LOSS_...
 PARAM_LAND_SPEED = "MPC_LAND_SPEED"  #: m/s, the descent
 PARAM_TAKEOFF_ALTITUDE = "MIS_TAKEOFF_ALT"  #: m
 PARAM_SYSTEM_ID = "MAV_SYS_ID"  #: integer, read-only
 
-LINK_LOSS_NOTHING, LINK_LOSS_LAND = 0, 3
+LINK_LOSS_NOTHING, LINK_LOSS_HOLD, LINK_LOSS_RETURN, LINK_LOSS_LAND = range(4)
 """Values of NAV_DLL_ACT."""
 
 

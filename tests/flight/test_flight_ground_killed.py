@@ -1,7 +1,9 @@
-"""The ground is killed on the way, behind links that lose, repeat and broadcast: the vehicles set the payload down."""
+"""The ground is killed on the way, behind links that lose, repeat or broadcast: the vehicles set the payload down."""
+
+from functools import partial
 
 import pytest
-from flights import InProcessFlight, address_of, system_file, truth_of
+from flights import MISSIONS, InProcessFlight, address_of, system_file, truth_of
 
 from gcs.flight.phase import Phase
 from gcs.mission.read import read_mission
@@ -23,10 +25,10 @@ return_home = false
 
 
 class Router:
-    """A world behind a MAVLink router: to a ``lost`` vehicle and from it nothing comes, datagrams to one come again."""
+    """A world behind links: of a ``lost`` vehicle nothing passes, what is for one is repeated after a delay (s)."""
 
-    def __init__(self, world, *, broadcasts=False, repeats_to=None, delay=0.0):
-        self._world, self._broadcasts, self._repeats_to, self._delay = world, broadcasts, repeats_to, delay
+    def __init__(self, world, *, repeats_to=None, delay=0.0):
+        self._world, self._repeats_to, self._delay = world, repeats_to, delay
         self._late, self.lost = [], None
 
     def __getattr__(self, name):
@@ -40,22 +42,32 @@ class Router:
         self._world.advance_to(now)
 
     def receive(self, datagrams, now):
-        for datagram, address in datagrams:
-            to = [address_of(i) for i in range(1, 5)] if self._broadcasts else [address]
-            self._world.receive([(datagram, each) for each in to if each != self.lost], now)
-            if self._repeats_to == address:
-                self._late.append((now + self._delay, datagram, address))
+        self._world.receive([(datagram, address) for datagram, address in datagrams if address != self.lost], now)
+        self._late += [(now + self._delay, *each) for each in datagrams if each[1] == self._repeats_to]
 
     def datagrams_to_send(self, now):
         return [(datagram, sender) for datagram, sender in self._world.datagrams_to_send(now) if sender != self.lost]
+
+
+class BroadcastingRouter(Router):
+    """One address in place of the vehicles': every vehicle gets what is for any of them."""
+
+    addresses = (("10.0.0.1", 14550),) * 4
+
+    def receive(self, datagrams, now):
+        each = self._world.addresses
+        self._world.receive([(datagram, address) for datagram, _ in datagrams for address in each], now)
+
+    def datagrams_to_send(self, now):
+        return [(datagram, self.addresses[0]) for datagram, _ in self._world.datagrams_to_send(now)]
 
 
 def flown(folder, *, speed, lost_before=None, **router):
     """The summary of a flight whose ground is killed in full motion, ``lost_before`` (s) after vehicle 2 is lost."""
     system_file(folder)
     (folder / "leg.toml").write_text(LEG.format(speed=speed))
-    with InProcessFlight(read_mission(folder / "leg.toml"), folder / "run") as flight:
-        world = flight.lockstep.world = Router(flight.lockstep.world, **router)
+    mission, behind = read_mission(folder / "leg.toml"), partial(Router, **router)
+    with InProcessFlight(mission, folder / "run", behind=behind) as flight:
         v_north = flight.flight.control.controller.layout.v_0.start
 
         def in_full_motion():
@@ -65,7 +77,7 @@ def flown(folder, *, speed, lost_before=None, **router):
         flight.fly(stop=in_full_motion)
         assert not flight.ended
         if lost_before is not None:
-            world.lost = address_of(2)
+            flight.world.lost = address_of(2)
             flight.fly(until=flight.now + lost_before)
         assert flight.run_without_ground()
         return flight.summary(), truth_of(folder / "run")
@@ -105,5 +117,10 @@ def test_position_of_all_is_lost_and_the_ground(tmp_path, ground_lost, wind):
         check_set_down(flight.summary(), truth_of(tmp_path / "run"))
 
 
-def test_router_broadcasts_everything(tmp_path):
-    check_set_down(*flown(tmp_path, speed=3.0, broadcasts=True))
+def test_ground_is_killed_on_the_figure_eight_behind_a_router_that_broadcasts(tmp_path):
+    with InProcessFlight(MISSIONS / "figure_eight.toml", tmp_path / "run", behind=BroadcastingRouter) as flight:
+        flight.fly(stop=lambda: flight.swarm.take_off_time is not None)
+        flight.fly(until=flight.swarm.take_off_time + 25.0)
+        assert flight.flight.phase is Phase.FLY and not flight.flight.reason
+        assert flight.run_without_ground()
+        check_set_down(flight.summary(), truth_of(tmp_path / "run"))

@@ -2,29 +2,20 @@
 
 import contextlib
 import math
-import threading
 from random import Random
 
 import pytest
 from flights import position_rmse, short_figure, truth_of
-from virtual_time import VirtualTime
+from virtual_time import GROUND, WORLD, VirtualTime, run_ground, swarm_in_real_time
 
 from gcs.app.fly import ground_station
 from gcs.drivers.connection import Connection
 from gcs.drivers.interrupt import Interrupt
-from gcs.drivers.realtime import run_in_real_time
 from gcs.flight.failsafe import Failsafe
 from gcs.mission.read import read_mission
 from gcs.record.recorder import FlightRecorder
-from vehicle_sim.app.drivers import RealTimeDriver
-from vehicle_sim.app.ending import Ending
-from vehicle_sim.app.swarm_sockets import SwarmSockets
-from vehicle_sim.swarm import Swarm
-from vehicle_sim.world.truth_log import TruthLog
 
 pytestmark = pytest.mark.slow
-
-GROUND, WORLD = "ground", "world"
 
 
 class GroundSocket(Connection):
@@ -36,46 +27,16 @@ class GroundSocket(Connection):
         self._time.wait(GROUND, [self.socket], timeout)
 
 
-class WorldsEnd(Ending):
-    def __init__(self, time):
-        super().__init__()
-        self._time = time
-
-    def wait(self, sockets, timeout):
-        self._time.wait(WORLD, sockets, timeout)
-
-
 def fly_in_real_time(mission, folder, stalls=()):
     """Both programs' loops, each in a thread: the flight, when it has ended."""
     folder.mkdir()
     time = VirtualTime([WORLD, GROUND], stalls)
     with contextlib.ExitStack() as opened:
         connection = opened.enter_context(contextlib.closing(GroundSocket(time)))
-        ending = opened.enter_context(contextlib.closing(WorldsEnd(time)))
-        sockets = opened.enter_context(SwarmSockets("127.0.0.1", 0, mission.system.team.vehicles, with_clock=False))
-        swarm = opened.enter_context(
-            Swarm(mission.system, seed=mission.seed, ground_address=connection.socket.getsockname())
-        )
-        swarm.record(TruthLog(folder, mission.system.team.vehicles))
         recorder = opened.enter_context(contextlib.closing(FlightRecorder(folder, 0.0)))
         station = ground_station(mission, [None] * mission.system.team.vehicles, recorder)
-
-        def world():
-            time.begin(WORLD)
-            try:
-                RealTimeDriver(swarm, sockets, ending, wall=time.read).run()
-            finally:
-                time.leave(WORLD)
-
-        thread = threading.Thread(target=world)
-        thread.start()
-        time.begin(GROUND)
-        try:
-            run_in_real_time(station, connection, Interrupt(), mission.system.drivers, clock=time.read)
-        finally:
-            ending.request()
-            time.leave(GROUND)
-            thread.join()
+        opened.enter_context(swarm_in_real_time(time, mission, folder, connection.socket.getsockname()))
+        run_ground(time, station, connection, Interrupt(), mission.system.drivers)
     return station.flight
 
 

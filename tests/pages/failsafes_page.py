@@ -1,58 +1,149 @@
 """``docs/failsafes.md`` from the tables of failsafes and alarms: ``python tests/pages/failsafes_page.py`` prints it."""
 
+from collections.abc import Sequence
 from dataclasses import asdict
+from typing import Any
 
+from page_tables import markdown_table
+
+from gcs.config import SystemConfig
 from gcs.config.flight_settings import DEFAULTS
 from gcs.flight.condition import Reaction
 from gcs.flight.delivery import DeliveryAlarm
 from gcs.flight.detectors import MonitorAlarm
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.guarantee import GuaranteeAlarm
+from gcs.flight.phase import Phase
+from gcs.mavlink import px4
+from vehicle_sim.autopilot import failsafe as coupled
+from vehicle_sim.autopilot.airframe import Airframe
+from vehicle_sim.autopilot.free import failsafe as free
+from vehicle_sim.autopilot.free import parameters as names
+from vehicle_sim.autopilot.vehicle_parameters import vehicle_parameters
+
+HOLD, OFFBOARD, LAND = (f"`{px4.mode_name(mode)}`" for mode in (px4.MODE_HOLD, px4.MODE_OFFBOARD, px4.MODE_LAND))
+STATES = [
+    {
+        "state": "on ground", "mode of the vehicles": f"{HOLD}, disarmed",
+        "begins": "at the start, and when all are disarmed; `REFUSE` remains here, `DISARM` leads here",
+        "flown by": "nobody",
+    },
+    {
+        "state": "controlled", "mode of the vehicles": OFFBOARD,
+        "begins": "with arming; `RETURN` and `BRAKE_AND_LAND` remain here", "flown by": "the ground",
+    },
+    {
+        "state": "stop and hold", "mode of the vehicles": HOLD,
+        "begins": "by `AUTONOMOUS_LANDING` of the ground, or `offboard_loss` on board",
+        "flown by": "each vehicle, by the stop plan",
+    },
+    {
+        "state": "descent", "mode of the vehicles": LAND,
+        "begins": "at the time in the stop plan, or by `data_link_loss` on board",
+        "flown by": "each vehicle, until it stands and disarms",
+    },
+]  # fmt: skip
+REACTIONS = [reaction for reaction in Reaction if reaction]
 
 
 def listing() -> str:
-    """Return the whole page, with the default thresholds."""
-    reactions = "\n".join(f"| `{reaction.name}` | {reaction.meaning} |" for reaction in Reaction if reaction)
-    failsafes = "\n".join(
-        f"| `{row.code}` | {row.meaning.format(**asdict(DEFAULTS.failsafe))} | {row.check.value} "
-        f"| `{row.reaction.name}` | {row.severity.name.lower()} | {row.action} |"
+    """Return the whole page, with the default thresholds and parameters."""
+    reactions = markdown_table(
+        [{"reaction, in ascending severity": f"`{each.name}`", "what is done": each.meaning} for each in REACTIONS]
+    )
+    failsafes = markdown_table([
+        {
+            "code": f"`{row.code}`", "condition": row.meaning.format(**asdict(DEFAULTS.failsafe)),
+            "evaluated": row.check.value, "reaction": f"`{row.reaction.name}`", "severity": row.severity.name.lower(),
+            "what to do": row.action,
+        }
         for row in Failsafe
-    )
-    alarms = "\n".join(
-        f"| `{row.code}` | {row.meaning.format(**asdict(DEFAULTS.monitor))} | {row.scope.value} "
-        f"| {row.severity.name.lower()} | {row.action} |"
+    ])  # fmt: skip
+    alarms = markdown_table([
+        {
+            "code": f"`{row.code}`", "meaning": row.meaning.format(**asdict(DEFAULTS.monitor)),
+            "evaluated": row.scope.value, "severity": row.severity.name.lower(), "what to do": row.action,
+        }
         for row in (*MonitorAlarm, *GuaranteeAlarm, *DeliveryAlarm)
-    )
+    ])  # fmt: skip
+    failsafe = SystemConfig().autopilot.failsafe
     return f"""# Failsafes and alarms
 
 This page is made from the code by `make docs`. Thresholds are those of the default settings
-(`gcs/config/flight_settings.py`).
+(`gcs/config/flight_settings.py`), and parameters have the vehicles' defaults.
 
-## Failsafes
+What ends or changes a flight is in two tables. The [ground's](#failsafes-of-the-ground) is evaluated on the whole team,
+and acts by commands to all vehicles. The [vehicles'](#failsafes-of-a-vehicle) is evaluated on board, each for itself,
+and acts where the ground does not reach them any more: they do the same at the same time, as each has the same stop
+plan. So the team is in one of these states, whichever of the two led to it:
+
+{markdown_table(STATES)}
+Only `offboard_loss` can end in the state before: a vehicle flies set-points again when two arrive. Where the ground has
+seen that it left them (`offboard_left`), it commands all to land.
+
+## Failsafes of the ground
 
 Every condition that ends or changes a flight is a member of `Failsafe` in `gcs/flight/failsafe.py`. Of several
 conditions the one with the most severe reaction counts; a reaction that is under way gives way only to a more severe
-one. Before arming every reaction but `END_CONTROL` is `REFUSE`; until the climb, and while the vehicles are disarmed,
-it is `DISARM`; between two flights, disarmed, `REFUSE` again: the next take-off is not begun.
+one. Of equally severe ones that of the whole team counts, then that of the first vehicle, then the order of the table.
 
-| reaction, in ascending severity | what is done |
-|---|---|
 {reactions}
+What is done for a reaction depends on the phase of the flight:
 
-| code | condition | evaluated | reaction | severity | what to do |
-|---|---|---|---|---|---|
+{by_phase()}
 {failsafes}
+## Failsafes of a vehicle
 
+Of a vehicle that carries a payload with others (`vehicle_sim/autopilot/failsafe.py`); the first condition that holds
+counts. "That time" is the parameter's, in seconds. The default of `{px4.PARAM_SETPOINT_LOSS}` is
+`flight.failsafe.telemetry_timeout` of the system file, so that ground and vehicles act at the same age; those of
+`{px4.PARAM_LINK_LOSS}` and `{px4.PARAM_LAND_DELAY}` ({failsafe.land_delay:g} s) are `link_loss` and `land_delay` of its
+table `autopilot.failsafe`. A vehicle in failsafe reports it in its HEARTBEAT (`MAV_STATE_CRITICAL`).
+
+{of_vehicles(coupled.FAILSAFES, free=False)}
+## Failsafes of a free vehicle
+
+Of a vehicle without a payload (`vehicle_sim/autopilot/free/failsafe.py`): what PX4 does without a remote control. With
+`{px4.PARAM_LINK_LOSS_ACTION}` 0, the default, silence of all grounds has no effect; 1 holds, 2 returns, 3 lands. Only
+the HEARTBEATs of ground stations (`MAV_TYPE_GCS`) count, and with an action a vehicle is not armed without them.
+`{names.FENCE_ACTION}` 0 does nothing, 1 warns, 2 holds, 3 returns, 5 lands. Without a position a vehicle brakes and
+descends by dead reckoning from its accelerometer and attitude, and refuses modes that need a position; attitude
+set-points of OFFBOARD do not.
+
+{of_vehicles(free.FAILSAFES, free=True)}
 ## Alarms
 
 What the detectors in `gcs/flight/detectors.py`, `guarantee.py` and `delivery.py` find changes nothing by itself. With
 the failsafes they are the codes of `alarms.csv` in the run folder; severities are those of MAV_SEVERITY. "Clear of the
 ground" is 0.3 m above it.
 
-| code | meaning | evaluated | severity | what to do |
-|---|---|---|---|---|
-{alarms}
-"""
+{alarms}"""
+
+
+def by_phase() -> str:
+    """Return the table of what is done for each reaction; phases in which the same is done share a row."""
+    alike: dict[tuple[Reaction, ...], list[str]] = {}
+    for phase in Phase:
+        if phase is not Phase.ENDED:
+            alike.setdefault(tuple(reaction.in_phase(phase) for reaction in REACTIONS), []).append(phase.value)
+    return markdown_table([
+        {"phase": ", ".join(phases)}
+        | {f"`{each.name}`": f"`{done.name}`" for each, done in zip(REACTIONS, reactions, strict=True)}
+        for reactions, phases in alike.items()
+    ])  # fmt: skip
+
+
+def of_vehicles(failsafes: Sequence[coupled.Failsafe[Any]], *, free: bool) -> str:
+    """Return the table of a vehicle's failsafes, with the default of each parameter."""
+    config = SystemConfig()
+    parameters = vehicle_parameters(Airframe.of_config(config.uav), 1, 1, config.autopilot, free=free)
+    return markdown_table([
+        {
+            "failsafe": f"`{row.name}`", "condition": row.meaning, "parameter": f"`{row.parameter}`",
+            "default": f"{parameters[row.parameter]:g}", "action": row.reaction, "STATUSTEXT": row.notice,
+        }
+        for row in failsafes
+    ])  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import math
 import runpy
+from functools import partial
 from pathlib import Path
 
 import pytest
+from flights import truth_of
 from programs import process
+from virtual_time import GROUND, WORLD, VirtualTime, run_ground, swarm_in_real_time
 
 import gcs
+from gcs.app import team as team_module
+from gcs.drivers.connection import Connection
 from gcs.errors import GcsError
 from gcs.mission.read import read_mission
 from gcs.serve.server import TeamServer
@@ -81,6 +86,30 @@ def test_team_connects_to_a_running_swarm(tmp_path: Path) -> None:
             with pytest.raises(gcs.OrderRefused, match="Land denied: not in the air"):
                 team.land()
             assert not team.in_air and team.flights == []
+
+
+@pytest.mark.long
+def test_team_flies_a_swarm_in_real_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    world, time = read_mission("hover", None, FEW), VirtualTime([WORLD, GROUND])
+    monkeypatch.setattr(team_module, "run_in_real_time", partial(run_ground, time))
+    monkeypatch.setattr(Connection, "wait", lambda self, timeout: time.wait(GROUND, [self.socket], timeout))
+    with swarm_in_real_time(time, world, tmp_path / "world") as vehicles:
+        urls = [f"udp://{host}:{port}" for host, port in vehicles]
+        with gcs.Team.connect(*urls, world=world, run_dir=tmp_path / "run") as team:
+            team.take_off(1.5)
+            assert team.wait() and team.in_air
+            team.go_to(2.0, 1.0, 2.0)
+            assert team.wait() and team.position == pytest.approx((2.0, 1.0, 2.0), abs=0.05)
+            team.land()
+            flight = team.finish()
+            assert flight is not None and flight.outcome == "completed", flight
+            team.take_off(1.0)
+            assert team.wait() and team.in_air
+        assert not team.in_air and [each.outcome for each in team.flights] == ["completed", "interrupted"]
+    truth = truth_of(tmp_path / "world")
+    end = {axis: truth[f"payload_{axis}_m"][-1] for axis in "xyz"}
+    assert end == pytest.approx({"x": 2.0, "y": 1.0, "z": -0.25}, abs=0.1)
+    assert truth["contacts"].max() == 0 and max(truth[f"uav{i}_thrust_n"][-1] for i in (1, 2, 3)) < 0.5
 
 
 def test_ground_that_fails_is_reported_by_the_next_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

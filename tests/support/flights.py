@@ -83,12 +83,13 @@ class InProcessFlight(FlightInProcess):
     """One flight, in a world that may be another one than the mission's."""
 
     def __init__(
-        self, mission, folder, *, seed=None, world=None, faults=None, controller="idc", obstacles=(), addresses=None
-    ):
+        self, mission, folder, *, seed=None, world=None, faults=None, controller="idc", obstacles=(), addresses=None,
+        behind=lambda world: world,
+    ):  # fmt: skip
         """``mission``: a path or a Mission; ``world``: the system file's config of the world when it differs.
 
         ``obstacles``: those of the world; the mission's own are on the map only. ``addresses``: of the vehicles, as
-        the ground is given them; None: the true ones.
+        the ground is given them; None: the true ones. ``behind``: returns a world as the ground is connected with it.
         """
         if isinstance(mission, Path):
             mission = read_mission(mission)
@@ -98,7 +99,7 @@ class InProcessFlight(FlightInProcess):
         if faults is None and mission.faults:
             faults = FaultInjector(mission.faults, mission.seed, config, mission)
         self.swarm = Swarm(config, seed=mission.seed, home=mission.home, faults=faults, obstacles=obstacles)
-        world = InProcessWorld(self.swarm, folder)
+        world = behind(InProcessWorld(self.swarm, folder))
         super().__init__(mission, folder, controller=controller, world=world, addresses=addresses)
         self.folder = folder
 

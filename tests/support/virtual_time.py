@@ -1,7 +1,17 @@
 """A wall clock for programs that wait for sockets: time passes only while every one of them waits."""
 
+import contextlib
 import select
 import threading
+
+from gcs.drivers.realtime import run_in_real_time
+from vehicle_sim.app.drivers import RealTimeDriver
+from vehicle_sim.app.ending import Ending
+from vehicle_sim.app.swarm_sockets import SwarmSockets
+from vehicle_sim.swarm import Swarm
+from vehicle_sim.world.truth_log import TruthLog
+
+GROUND, WORLD = "ground", "world"
 
 
 class VirtualTime:
@@ -60,3 +70,44 @@ class VirtualTime:
             if stalled == who and start <= max(at, self.now) < start + duration:
                 at = start + duration
         return at
+
+
+@contextlib.contextmanager
+def swarm_in_real_time(time, mission, folder, ground_address=None):
+    """The party ``WORLD``: a swarm with its driver of real time, in a thread; the addresses of its vehicles."""
+
+    class WorldsEnd(Ending):
+        def wait(self, sockets, timeout):
+            time.wait(WORLD, sockets, timeout)
+
+    ending, number = WorldsEnd(), mission.system.team.vehicles
+    with (
+        SwarmSockets("127.0.0.1", 0, number, with_clock=False) as sockets,
+        Swarm(mission.system, seed=mission.seed, ground_address=ground_address) as swarm,
+    ):
+        swarm.record(TruthLog(folder, number))
+        driver = RealTimeDriver(swarm, sockets, ending, wall=time.read)
+
+        def run():
+            time.begin(WORLD)
+            try:
+                driver.run()
+            finally:
+                time.leave(WORLD)
+
+        thread = threading.Thread(target=run)
+        thread.start()
+        try:
+            yield [socket.getsockname() for socket in sockets.vehicles]
+        finally:
+            ending.request()
+            thread.join()
+
+
+def run_ground(time, station, connection, *arguments, **options):
+    """The party ``GROUND``, whose ``connection`` waits in ``time``: run it in real time to its end."""
+    time.begin(GROUND)
+    try:
+        run_in_real_time(station, connection, *arguments, **options, clock=time.read)
+    finally:
+        time.leave(GROUND)

@@ -1,4 +1,7 @@
-"""A vehicle's failsafes: condition, parameter, action, as one table; ``docs/architecture.md`` mirrors it."""
+"""A vehicle's failsafes, which act without the ground: condition, parameter, action, as one table.
+
+The ground's: ``gcs/flight/failsafe.py``. ``docs/failsafes.md`` is made from both.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -16,6 +19,10 @@ class Failsafe(Generic[S]):
     """Cause, condition and action; in flight the vehicle is then in failsafe, until a ground commands it."""
 
     name: str
+    meaning: str
+    """For people: when it acts."""
+    reaction: str
+    """For people: what the vehicle does."""
     parameter: str
     """The PX4 parameter that decides when."""
     cause: Callable[[S, float], bool]
@@ -99,19 +106,33 @@ def _land(state: FlightState, now: float) -> None:
 OFFBOARD_LOSS_ON_GROUND: tuple[Failsafe[FlightState], ...] = (
     Failsafe(
         "offboard_loss_on_ground",
+        "OFFBOARD, armed on the ground, no set-point for that time",
+        "disarm",
         px4.PARAM_SETPOINT_LOSS,
         setpoints_lost,
         armed,
         disarm,
         "Set-points lost on the ground: disarmed",
     ),
-    Failsafe("offboard_loss_disarmed", px4.PARAM_SETPOINT_LOSS, setpoints_lost, always, disarm, ""),
+    Failsafe(
+        "offboard_loss_disarmed",
+        "OFFBOARD, disarmed, no set-point for that time",
+        "HOLD (already disarmed)",
+        px4.PARAM_SETPOINT_LOSS,
+        setpoints_lost,
+        always,
+        disarm,
+        "",
+    ),
 )
 """Of any vehicle; to follow that of one in the air."""
 
 FAILSAFES: tuple[Failsafe[FlightState], ...] = (
     Failsafe(
         "offboard_loss",
+        "OFFBOARD, armed and off the ground, no set-point for that time",
+        f"HOLD by the stop plan, LAND at its time, without one after `{px4.PARAM_LAND_DELAY}`; ends when two "
+        f"set-points arrive within `{px4.PARAM_SETPOINT_LOSS}`",
         px4.PARAM_SETPOINT_LOSS,
         setpoints_lost,
         _in_flight,
@@ -121,6 +142,9 @@ FAILSAFES: tuple[Failsafe[FlightState], ...] = (
     *OFFBOARD_LOSS_ON_GROUND,
     Failsafe(
         "data_link_loss",
+        f"HOLD in flight, no message of the ground in control for that time, and `{px4.PARAM_LINK_LOSS_ACTION}` is "
+        f"{px4.LINK_LOSS_LAND}",
+        "LAND",
         px4.PARAM_LINK_LOSS,
         _data_link_lost,
         always,

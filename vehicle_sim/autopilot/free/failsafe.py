@@ -1,12 +1,10 @@
-"""A free vehicle's failsafes, as PX4 has them without a remote control; ``docs/architecture.md`` mirrors the table."""
+"""A free vehicle's failsafes, as PX4 has them without a remote control; ``docs/failsafes.md`` is made from it."""
 
 from gcs.mavlink import px4
 from vehicle_sim.autopilot.failsafe import OFFBOARD_LOSS_ON_GROUND, Failsafe, by_cause, setpoints_lost
 from vehicle_sim.autopilot.free import parameters as names
 from vehicle_sim.autopilot.free.modes import return_home
 from vehicle_sim.autopilot.free.state import FENCE_HOLD, FENCE_RETURN, FENCE_WARNING, FreeFlightState
-
-_NOTHING, _HOLD, _RETURN = 0, 1, 2  # values of NAV_DLL_ACT; any other: land
 
 
 def _in_flight(state: FreeFlightState) -> bool:
@@ -85,7 +83,7 @@ def _react_to_breach(state: FreeFlightState, now: float) -> None:
 def is_data_link_lost(state: FreeFlightState, now: float) -> bool:
     """Return True if no ground station sends its HEARTBEAT, and the vehicle is to react to that."""
     return (
-        state.parameters[names.LINK_LOSS_ACTION] != _NOTHING
+        state.parameters[px4.PARAM_LINK_LOSS_ACTION] != px4.LINK_LOSS_NOTHING
         and now - state.link_time > state.parameters[px4.PARAM_LINK_LOSS]
     )
 
@@ -95,20 +93,40 @@ def _data_link_lost(state: FreeFlightState, now: float) -> bool:
 
 
 def _react_to_link_loss(state: FreeFlightState, now: float) -> None:
-    action = state.parameters[names.LINK_LOSS_ACTION]
-    if action == _HOLD:
+    action = state.parameters[px4.PARAM_LINK_LOSS_ACTION]
+    if action == px4.LINK_LOSS_HOLD:
         _hold(state, now)
-    elif action == _RETURN:
+    elif action == px4.LINK_LOSS_RETURN:
         _return(state, now)
     else:
         _land(state, now)
 
 
 FAILSAFES: tuple[Failsafe[FreeFlightState], ...] = (
-    Failsafe("position_loss", names.POSITION_LOSS, _position_lost, _in_flight, _land, "Position lost: descending"),
-    Failsafe("fence_breach", names.FENCE_ACTION, _fence_breached, _in_flight, _react_to_breach, ""),
+    Failsafe(
+        "position_loss",
+        "in the air, flown by position, which repeats itself while the vehicle moves",
+        "LAND",
+        names.POSITION_LOSS,
+        _position_lost,
+        _in_flight,
+        _land,
+        "Position lost: descending",
+    ),
+    Failsafe(
+        "fence_breach",
+        "in the air, has left what the fence allows; not landing, nor returning where that is the action",
+        "by the parameter",
+        names.FENCE_ACTION,
+        _fence_breached,
+        _in_flight,
+        _react_to_breach,
+        "",
+    ),
     Failsafe(
         "offboard_loss",
+        "OFFBOARD in the air, no set-point for that time",
+        f"brake and hold; ends when two set-points arrive within `{px4.PARAM_SETPOINT_LOSS}`",
         px4.PARAM_SETPOINT_LOSS,
         setpoints_lost,
         _in_flight,
@@ -118,6 +136,8 @@ FAILSAFES: tuple[Failsafe[FreeFlightState], ...] = (
     *OFFBOARD_LOSS_ON_GROUND,
     Failsafe(
         "offboard_still_lost",
+        "in that hold for that time",
+        "return to home and land",
         names.FAILSAFE_DELAY,
         _hold_is_over,
         _in_flight,
@@ -126,7 +146,9 @@ FAILSAFES: tuple[Failsafe[FreeFlightState], ...] = (
     ),
     Failsafe(
         "data_link_loss",
-        names.LINK_LOSS_ACTION,
+        f"in the air, neither returning nor landing, no HEARTBEAT of a ground station for `{px4.PARAM_LINK_LOSS}`",
+        "by the parameter",
+        px4.PARAM_LINK_LOSS_ACTION,
         _data_link_lost,
         _in_flight,
         _react_to_link_loss,

@@ -14,7 +14,6 @@ RETURN_ALTITUDE = "RTL_RETURN_ALT"
 DESCEND_ALTITUDE = "RTL_DESCEND_ALT"
 RETURN_NEAR = "RTL_MIN_DIST"
 RETURN_TYPE = "RTL_TYPE"
-LINK_LOSS_ACTION = "NAV_DLL_ACT"
 FAILSAFE_DELAY = "COM_FAIL_ACT_T"
 POSITION_LOSS = "COM_POSCTL_NAVL"
 FENCE_ACTION = "GF_ACTION"
@@ -42,7 +41,11 @@ def free_parameters(airframe: Airframe) -> list[Parameter]:
         _real(RETURN_NEAR, 10.0, (0.5, 100.0), "distance of home below which it climbs no higher than that (m)"),
         Parameter(RETURN_TYPE, 0, INTEGER, (0, 0), "0: to the nearest of home and the rally points"),
         Parameter(
-            LINK_LOSS_ACTION, 0, INTEGER, (0, 3), "without a ground station: 0 nothing, 1 hold, 2 return, 3 land"
+            px4.PARAM_LINK_LOSS_ACTION,
+            px4.LINK_LOSS_NOTHING,
+            INTEGER,
+            (px4.LINK_LOSS_NOTHING, px4.LINK_LOSS_LAND),
+            "without a ground station: 0 nothing, 1 hold, 2 return, 3 land",
         ),
         _real(FAILSAFE_DELAY, 5.0, (0.0, 25.0), "hold after set-points were lost, before it returns (s)"),
         Parameter(POSITION_LOSS, 1, INTEGER, (1, 1), "without a position: 1, descend"),
