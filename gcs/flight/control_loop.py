@@ -132,7 +132,9 @@ class ControlLoop:
         self.estimator.setpoints.add(effective, record.decision.u, leaves)
         plan = stop_plan(self.controller.parameters, record.decision.flat, effective, record.estimate.x, self.brake)
         plans = self.stop_plans
-        plans.append(plan._replace(descent=effective + hold.duration))
+        plans.append(
+            plan._replace(descent=effective + hold.duration, hover_thrusts=self.controller.hover_thrusts(effective))
+        )
         received = self.estimator.setpoints.received_by_all(effective, hold.unconfirmed_max)
         while len(plans) > 1 and plans[1].start <= received:
             plans.popleft()
