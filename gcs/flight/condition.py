@@ -18,6 +18,7 @@ from gcs.flight.preflight import Preflight
 from gcs.flight.team import Team
 from gcs.flight.team_clock import StepIntervals
 from idc_controller.estimation.estimator import Estimator
+from idc_controller.estimation.grounded_links import GroundedLinks
 from idc_controller.estimation.measurements import Estimate
 from idc_controller.guidance.progress import Guidance
 from idc_controller.perception.obstacle_map import ObstacleMap
@@ -93,6 +94,10 @@ class System:
     """Of the control steps that were made."""
     landing_place: LandingPlace | None = None
     """None: it is not watched."""
+    links: GroundedLinks | None = None
+    """Over a payload on the ground; None: not estimated."""
+    landing_speed: float = 0.3
+    """Of the payload at touch-down (m/s)."""
 
 
 class Moment(NamedTuple):

@@ -13,7 +13,7 @@ from idc_controller.arrays import Array
 from idc_controller.control.controller import Decision, IntegratedDecisionController
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.grounded_links import N_ACC, N_DOT, OFF, S_DOT, GroundedLinks, LinkStates, N, S
-from idc_controller.estimation.measurements import Channel, Estimate, Measurement, Position
+from idc_controller.estimation.measurements import PAYLOAD, Channel, Estimate, Measurement, Position
 from idc_controller.trajectory.stop_plan import Braking, StopPlan, stop_plan
 from idc_controller.trajectory.trajectory import Trajectory
 
@@ -86,7 +86,8 @@ class ControlLoop:
             drag = np.median(forces, axis=0)
             x[[S, S_DOT, N, N_DOT, N_ACC]] = [estimate.x[part].reshape(-1, 2) for part in parts]
             x[OFF] = (forces - drag) / thrusts[:, None]
-        self.links.start(time, payload, x, thrusts, drag)
+        unlocated = self.estimator.health.unusable_poses(Position, time) - {PAYLOAD}
+        self.links.start(time, payload, x, thrusts, drag, unlocated)
 
     def add_to_links(self, measurement: Measurement) -> None:
         """Take a measurement over a payload on the ground, without channels that are isolated."""

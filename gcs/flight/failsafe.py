@@ -196,6 +196,26 @@ def _offboard_left(system: System, moment: Moment) -> Trigger | None:
     return None
 
 
+def _pose_missing(system: System, moment: Moment) -> Trigger | None:
+    if moment.phase is not Phase.SPOOL_UP:
+        return None  # in the air the others carry on
+    timeout = system.settings.telemetry_timeout
+    for i, link in enumerate(system.team.links):
+        if moment.now - link.complete_telemetry_received_at > timeout:
+            return Trigger(f"vehicle {link.system_id} does not send all telemetry for {timeout:g} s", (i,))
+    return None
+
+
+def _lifted_again(system: System, moment: Moment) -> Trigger | None:
+    if moment.phase is not Phase.SPOOL_DOWN or system.links is None:
+        return None
+    # At touch-down it bounces no faster than it came.
+    rise, limit = -float(system.links.payload_velocity[2]), system.landing_speed
+    if not system.payload.has_lifted_again(rise, limit):
+        return None
+    return Trigger(f"the payload rises at {rise:.1f} m/s after touch-down (limit {limit:g} m/s)", source="payload")
+
+
 def _telemetry_incomplete(system: System, moment: Moment) -> Trigger | None:
     # The estimator can do without the attitude or the position of one vehicle, but not of several.
     links, timeout = system.team.links, system.settings.telemetry_timeout
@@ -407,6 +427,10 @@ class Failsafe(AlarmCode):
         "a vehicle no longer flies the ground's set-points")
     TELEMETRY_INCOMPLETE = (Check.LINK, _telemetry_incomplete, Reaction.AUTONOMOUS_LANDING, "check their sensors",
         "two or more vehicles have sent no position or no attitude for {telemetry_timeout} s")
+    POSE_MISSING = (Check.LINK, _pose_missing, Reaction.DISARM, "check its sensors",
+        "while the rotors spool up one vehicle has sent no position or no attitude for {telemetry_timeout} s")
+    LIFTED_AGAIN = (Check.STEP, _lifted_again, Reaction.AUTONOMOUS_LANDING, "check the load",
+        "after touch-down the payload rises faster than it bounces: than the landing speed")
     DATA_LINK_LOST = (Check.STEP, _data_link_lost, Reaction.END_CONTROL, "stay clear until the vehicles have landed",
         "no message of any vehicle for {data_link_timeout:g} s, once the descent has been commanded")
     CONTROL_OVERRUN = (Check.STEP, _control_overrun, Reaction.AUTONOMOUS_LANDING,

@@ -46,7 +46,8 @@ class Flight:
         self.system = System(
             team, control.estimator, control.controller.guidance, payload, preflight, plan, ImpactMonitor(team.links),
             obstacle_map, settings.failsafe, mission.system.avoidance.margin + mission.system.safety.planner.tracking,
-            1.0 / mission.system.rates.control, landing_place=self.landing_place,
+            1.0 / mission.system.rates.control, landing_place=self.landing_place, links=control.links,
+            landing_speed=mission.system.motion.landing_speed,
         )  # fmt: skip
         """The objects that the conditions of failsafes are evaluated on."""
         self.failsafes = FailsafeState(self.system, alarms)
@@ -410,13 +411,16 @@ class Flight:
         if in_air and self._evaluate(Check.ESTIMATE, time, now, estimate):
             return None, None
         links = None if in_air else self.control.links.at(estimate.time)
+        learns = self.system.payload.may_be_weighed(estimate)
         self.last_record = record = self.control.decide(
             estimate,
             trajectory,
             links=links,
-            learn_load=self.system.payload.is_clear(estimate),
+            learn_load=learns,
             touched_down=self._touchdown is not None,
         )
+        if in_air and learns:
+            self.control.estimator.follow_mass(self.control.controller.load.payload_mass)
         thrusts = self._thrusts(time, record.decision.thrusts, links)
         if links is not None:
             tilts = record.decision.u[self.control.controller.layout.n_setpoint].reshape(-1, 2)
