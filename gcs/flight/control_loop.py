@@ -120,6 +120,8 @@ class ControlLoop:
             estimate, trajectory, links=links, learn_load=learn_load, touched_down=touched_down
         )
         self.compute_times.lap(Part.CONTROL)
+        if links is None and learn_load:
+            self.estimator.follow_mass(self.controller.load.payload_mass)
         self.compute_times.shift(decision.compute_time.planner, Part.CONTROL, Part.PLANNING)
         return StepRecord(estimate, decision)
 

@@ -411,16 +411,13 @@ class Flight:
         if in_air and self._evaluate(Check.ESTIMATE, time, now, estimate):
             return None, None
         links = None if in_air else self.control.links.at(estimate.time)
-        learns = self.system.payload.may_be_weighed(estimate)
         self.last_record = record = self.control.decide(
             estimate,
             trajectory,
             links=links,
-            learn_load=learns,
+            learn_load=self.system.payload.may_be_weighed(estimate),
             touched_down=self._touchdown is not None,
         )
-        if in_air and learns:
-            self.control.estimator.follow_mass(self.control.controller.load.payload_mass)
         thrusts = self._thrusts(time, record.decision.thrusts, links)
         if links is not None:
             tilts = record.decision.u[self.control.controller.layout.n_setpoint].reshape(-1, 2)
