@@ -97,6 +97,14 @@ class TakeoffLandingSettings(SettingsTable):
     # of the payload's weight, that UAVs carry until their links are upright: with more of it a payload slides in wind
     carried_share: Share = 0.24
     upright_lean: float = 0.05  # sine of a link's tilt that stays upright without thrust
+    # the same of a payload that slides: it stands on friction, which the wind exceeds
+    carried_share_sliding: Share = 0.06
+    slide_time: float = 1.0  # s; time constant with which it falls to that: longer than a payload takes to settle
+    # the same of a UAV without a position, which is off by less where its link pulls harder; with more of it a payload
+    # that has lost a load tips
+    carried_share_unlocated: Share = 0.5
+    # m/s; of a payload at rest on the ground: six standard deviations of its unit's velocity
+    rest_speed: float = 0.05
     lean_time: float = 1.0  # s; a link that moves on at its rate must be upright for so long, too
     upright_timeout: float = 5.0  # s; for links to come upright before the thrust fades
     touch_depth: float = 0.06  # m; of the reference below a payload that is on the ground
@@ -108,6 +116,8 @@ class TakeoffLandingSettings(SettingsTable):
     touch_height: float = 1.0  # m; above which nothing is a touchdown
     lift_off_lag: float = 0.05  # m; of a climb behind its plan on the ground, from which the thrust grows on
     clear_height: float = 0.3  # m; below which the ground may carry part of the load
+    # m; below which the load is not learnt: a pad, and the lowest corner of a payload tilted by 5 deg
+    learn_height: float = 0.15
     landing_overshoot: float = 0.15  # m; below the expected ground, where a descent aims
     slow_height: float = 1.0  # m; above the ground, below which a descent is slow
     slow_margin: float = 0.5  # m; above that, from where the whole descent is slow

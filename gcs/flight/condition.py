@@ -20,6 +20,7 @@ from gcs.flight.team_clock import StepIntervals
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.arrays import Array
 from idc_controller.estimation.estimator import Estimator
+from idc_controller.estimation.grounded_links import GroundedLinks
 from idc_controller.estimation.measurements import Estimate
 from idc_controller.geometry.formation import Formation
 from idc_controller.guidance.progress import Guidance
@@ -97,6 +98,10 @@ class System:
     """Of the control steps that were made."""
     landing_place: LandingPlace | None = None
     """None: it is not watched."""
+    links: GroundedLinks | None = None
+    """Over a payload on the ground; None: not estimated."""
+    landing_speed: float = 0.3
+    """Of the payload at touch-down (m/s)."""
 
     def obstruction(self, time: float, place: Array, within: float) -> Obstruction | None:
         """Return what is nearer than ``within`` (m) to the formation at rest at ``place`` (3,), by the obstacle map."""

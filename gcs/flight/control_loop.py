@@ -13,7 +13,7 @@ from idc_controller.arrays import Array
 from idc_controller.control.controller import Decision, IntegratedDecisionController
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.grounded_links import N_ACC, N_DOT, OFF, S_DOT, GroundedLinks, LinkStates, N, S
-from idc_controller.estimation.measurements import Channel, Estimate, Measurement, Position
+from idc_controller.estimation.measurements import PAYLOAD, Channel, Estimate, Measurement, Position
 from idc_controller.trajectory.stop_plan import Braking, StopPlan, stop_plan
 from idc_controller.trajectory.trajectory import Trajectory
 
@@ -86,7 +86,8 @@ class ControlLoop:
             drag = np.median(forces, axis=0)
             x[[S, S_DOT, N, N_DOT, N_ACC]] = [estimate.x[part].reshape(-1, 2) for part in parts]
             x[OFF] = (forces - drag) / thrusts[:, None]
-        self.links.start(time, payload, x, thrusts, drag)
+        unlocated = self.estimator.health.unusable_poses(Position, time) - {PAYLOAD}
+        self.links.start(time, payload, x, thrusts, drag, unlocated)
 
     def add_to_links(self, measurement: Measurement) -> None:
         """Take a measurement over a payload on the ground, without channels that are isolated."""
@@ -119,6 +120,8 @@ class ControlLoop:
             estimate, trajectory, links=links, learn_load=learn_load, touched_down=touched_down
         )
         self.compute_times.lap(Part.CONTROL)
+        if links is None and learn_load:
+            self.estimator.follow_mass(self.controller.load.payload_mass)
         self.compute_times.shift(decision.compute_time.planner, Part.CONTROL, Part.PLANNING)
         return StepRecord(estimate, decision)
 
@@ -132,7 +135,9 @@ class ControlLoop:
         self.estimator.setpoints.add(effective, record.decision.u, leaves)
         plan = stop_plan(self.controller.parameters, record.decision.flat, effective, record.estimate.x, self.brake)
         plans = self.stop_plans
-        plans.append(plan._replace(descent=effective + hold.duration))
+        plans.append(
+            plan._replace(descent=effective + hold.duration, hover_thrusts=self.controller.hover_thrusts(effective))
+        )
         received = self.estimator.setpoints.received_by_all(effective, hold.unconfirmed_max)
         while len(plans) > 1 and plans[1].start <= received:
             plans.popleft()

@@ -103,6 +103,10 @@ class Failsafe(AlarmCode):
     POSITIONS_LOST = (Check.LINK, link.positions_lost, Reaction.BRAKE_AND_LAND, "check their navigation",
         "two or more vehicles have sent no position for {telemetry_timeout} s, or position and velocity of them are "
         "isolated; their links are then known by attitudes, set-points and the payload's motion")
+    POSE_MISSING = (Check.LINK, link.pose_missing, Reaction.DISARM, "check its sensors",
+        "while the rotors spool up one vehicle has sent no position or no attitude for {telemetry_timeout} s")
+    LIFTED_AGAIN = (Check.STEP, in_air.lifted_again, Reaction.AUTONOMOUS_LANDING, "check the load",
+        "after touch-down the payload rises faster than it bounces: than the landing speed")
     DATA_LINK_LOST = (Check.STEP, link.data_link_lost, Reaction.END_CONTROL,
         "stay clear until the vehicles have landed",
         "no message of any vehicle for {data_link_timeout:g} s, once the descent has been commanded")

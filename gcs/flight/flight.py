@@ -46,7 +46,8 @@ class Flight:
         self.system = System(
             team, control.estimator, control.controller.guidance, payload, preflight, plan, ImpactMonitor(team.links),
             obstacle_map, settings.failsafe, mission.system.avoidance.margin + mission.system.safety.planner.tracking,
-            1.0 / mission.system.rates.control, landing_place=self.landing_place,
+            1.0 / mission.system.rates.control, landing_place=self.landing_place, links=control.links,
+            landing_speed=mission.system.motion.landing_speed,
         )  # fmt: skip
         """The objects that the conditions of failsafes are evaluated on."""
         self.failsafes = FailsafeState(self.system, alarms)
@@ -414,7 +415,7 @@ class Flight:
             estimate,
             trajectory,
             links=links,
-            learn_load=self.system.payload.is_clear(estimate),
+            learn_load=self.system.payload.may_be_weighed(estimate),
             touched_down=self._touchdown is not None,
         )
         thrusts = self._thrusts(time, record.decision.thrusts, links)

@@ -242,10 +242,14 @@ class GroundStation:
             self._plan_number += 1
             if self._plan_number == 1:
                 self._session = round(now * 1e3) & 0xFFFFFFFF
-            for link, queue, points in zip(self.links, messages, plan.control_points.tolist(), strict=True):
+            paths = plan.control_points.tolist()
+            hover = [math.nan] * len(paths) if plan.hover_thrusts is None else plan.hover_thrusts.tolist()
+            for link, queue, points, thrust in zip(self.links, messages, paths, hover, strict=True):
                 ahead = link.clock.offset - self._clock.offset
                 start, descent = plan.start + ahead, plan.descent + ahead
-                content = StopPlanContent(self._session, self._plan_number, start, descent, plan.duration, 0.0, points)
+                content = StopPlanContent(
+                    self._session, self._plan_number, start, descent, plan.duration, 0.0, points, thrust
+                )
                 queue.append(stop_plan_message(link.system_id, content))
         if setpoints is not None:
             rows = zip(setpoints.directions.tolist(), setpoints.thrusts.tolist(), strict=True)

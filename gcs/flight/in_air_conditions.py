@@ -32,6 +32,16 @@ def landing_aborted(system: System, moment: Moment) -> Trigger | None:
     return Trigger(f"landing place taken by {place.taken.name} for {wait:g} s", source=place.taken.name)
 
 
+def lifted_again(system: System, moment: Moment) -> Trigger | None:
+    if moment.phase is not Phase.SPOOL_DOWN or system.links is None:
+        return None
+    # At touch-down it bounces no faster than it came.
+    rise, limit = -float(system.links.payload_velocity[2]), system.landing_speed
+    if not system.payload.has_lifted_again(rise, limit):
+        return None
+    return Trigger(f"the payload rises at {rise:.1f} m/s after touch-down (limit {limit:g} m/s)", source="payload")
+
+
 def payload_control_lost(system: System, moment: Moment) -> Trigger | None:
     lost = moment.estimate is not None and system.payload.is_out_of_control(moment.time, moment.estimate)
     return Trigger("control of the payload is lost", source="payload") if lost else None

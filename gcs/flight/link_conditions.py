@@ -72,6 +72,16 @@ def positions_lost(system: System, moment: Moment) -> Trigger | None:
     return Trigger(f"the positions of vehicles {_names(links[i] for i in lost)} are not known", tuple(lost))
 
 
+def pose_missing(system: System, moment: Moment) -> Trigger | None:
+    if moment.phase is not Phase.SPOOL_UP:
+        return None  # in the air the others carry on
+    timeout = system.settings.telemetry_timeout
+    for i, link in enumerate(system.team.links):
+        if moment.now - link.complete_telemetry_received_at > timeout:
+            return Trigger(f"vehicle {link.system_id} does not send all telemetry for {timeout:g} s", (i,))
+    return None
+
+
 def data_link_lost(system: System, moment: Moment) -> Trigger | None:
     if moment.phase is Phase.ON_GROUND:
         return None  # all are disarmed; before the next take-off they must have connected again

@@ -16,7 +16,7 @@ class PayloadMonitor:
         self._settings = settings
         self._layout = StateLayout(parameters.number_of_uavs)
         self._standing = -parameters.payload.below
-        self._touch_steps = 0
+        self._touch_steps = self._rise_steps = 0
         self._in_control = math.inf
 
     def height(self, estimate: Estimate) -> float:
@@ -24,8 +24,12 @@ class PayloadMonitor:
         return float(self._standing - estimate.x[self._layout.r_0][2])
 
     def is_clear(self, estimate: Estimate) -> bool:
-        """Return whether the ground carries no part of the payload."""
+        """Return whether the payload is clear of the ground, for what sensors and alarms assume."""
         return self.height(estimate) > self._settings.takeoff_landing.clear_height
+
+    def may_be_weighed(self, estimate: Estimate) -> bool:
+        """Return whether the ground surely carries no part of the payload, so that its load can be learnt."""
+        return self.height(estimate) > self._settings.takeoff_landing.learn_height
 
     def is_out_of_control(self, time: float, estimate: Estimate) -> bool:
         """Return whether the payload has been tilted, or its state unknown, for longer than any manoeuvre takes.
@@ -50,6 +54,14 @@ class PayloadMonitor:
         on_ground = depth > s.touch_depth_near if near else depth > s.touch_depth and at_rest
         self._touch_steps = self._touch_steps + 1 if on_ground else 0
         return self._touch_steps >= s.touch_steps or progress > descent.end + s.touch_grace
+
+    def has_lifted_again(self, rise: float, limit: float) -> bool:
+        """Return whether the payload rises faster than ``limit`` (m/s), in two control steps in a row.
+
+        ``rise``: its upward speed (m/s). Call once a control step.
+        """
+        self._rise_steps = self._rise_steps + 1 if rise > limit else 0
+        return self._rise_steps > 1
 
     def is_descent_stalled(self, progress: float, descent: Trajectory, estimate: Estimate) -> bool:
         """Return whether the payload is still high long after the planned end of ``descent``."""

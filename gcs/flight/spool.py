@@ -1,5 +1,7 @@
 """The payload on the ground before and after the flight, while the thrust grows or fades."""
 
+import math
+
 import numpy as np
 
 from gcs.config.flight_settings import TakeoffLandingSettings
@@ -70,8 +72,10 @@ class SpoolUp:
 class Touchdown:
     """The payload at rest where it touched down, and the spool-down, which waits until leaning links are upright.
 
-    First the ground takes the payload's weight over, all but a share of it that keeps the links taut. A UAV that bears
-    less than its own weight falls with its link, if that leans: this begins only when no link does, or after a timeout.
+    First the ground takes the payload's weight over, all but a share of it that keeps the links taut: less where the
+    payload slides or tips, more of a UAV without a position. A UAV that bears less than its own weight falls
+    with its link, if that leans or its foot moves: this begins only when no link does and the payload is at rest, or
+    after a timeout.
     """
 
     def __init__(
@@ -80,19 +84,29 @@ class Touchdown:
         """``trajectory``: rest where it touched down at ``time`` (s); ``yaw`` in rad; ``own_weights`` (N,) (N)."""
         self.trajectory, self.yaw = trajectory, yaw
         self._begin, self._own, self._settings = time, own_weights, settings
+        self._least = np.array([settings.carried_share, settings.carried_share_unlocated])
+        self._time = time
         self._upright_at: float | None = None
 
     def thrusts(self, time: float, hover: Array, links: LinkStates) -> Array:
         """Return the thrusts (N,) at ``time`` (s) of UAVs that need ``hover`` (N,) (N) with the payload in the air."""
         s = self._settings
-        carried = max(1.0 - (time - self._begin) / s.unload_time, s.carried_share)
-        standing = self._own + carried * np.maximum(hover - self._own, 0.0)
-        if carried > s.carried_share:
+        unloading = 1.0 - (time - self._begin) / s.unload_time
+        at_rest = float(np.linalg.norm(links.payload_velocity)) < s.rest_speed
+        if unloading < s.carried_share and not at_rest:
+            kept = math.exp(-(time - self._time) / s.slide_time)
+            self._least = np.maximum(kept * self._least, s.carried_share_sliding)
+        self._time = time
+        # Where a UAV is that has no position, nothing but the tension of its link holds it.
+        least = np.where(links.located, *self._least)
+        standing = self._own + np.maximum(unloading, least) * np.maximum(hover - self._own, 0.0)
+        if unloading > s.carried_share:
             return np.asarray(standing)
         if self._upright_at is None:
             lean = max(np.abs(links.x[S]).max(), s.lean_time * np.abs(links.x[S_DOT]).max())
-            if lean > s.upright_lean and time - self._begin < s.upright_timeout:
+            if (lean > s.upright_lean or not at_rest) and time - self._begin < s.upright_timeout:
                 return np.asarray(standing)
             self._upright_at = time
-        faded = (time - self._upright_at) / s.spool_down_time * np.maximum(hover, self._own)
-        return np.maximum(standing - faded, 0.0)
+        usual = self._own + self._least[0] * np.maximum(hover - self._own, 0.0)
+        faded = (time - self._upright_at) / s.spool_down_time * np.maximum(hover, self._own) / usual
+        return np.asarray(standing * np.maximum(1.0 - faded, 0.0))  # all at the same time

@@ -1,5 +1,6 @@
 """The stop plan on the wire: TUNNEL, so that it names its vehicle, and routers hand it to no other."""
 
+import math
 import struct
 from collections.abc import Sequence
 from itertools import chain
@@ -22,7 +23,7 @@ with: by then the loss of a vehicle that confirms none has been detected.
 _TUNNEL = LAYOUTS[mavlink.MAVLINK_MSG_ID_TUNNEL]
 _HEAD = struct.Struct("<H3B")
 """Fields of TUNNEL before its content: packed number by number, that would take longer than all the rest."""
-_CONTENT = struct.Struct(f"<2I2q2f{3 * POINTS}f")
+_CONTENT = struct.Struct(f"<2I2q3f{3 * POINTS}f")
 _US = 1e6
 
 
@@ -31,7 +32,8 @@ class StopPlanContent(NamedTuple):
 
     ``session``: a number of the ground's own, another one whenever it is started anew; ``number``: of the plan in that
     session, rising. ``start`` of the stop and ``duration`` (s); ``descent``: when all vehicles descend. ``yaw`` (rad);
-    ``control_points``: five of its path (m, NED).
+    ``control_points``: five of its path (m, NED). ``hover_thrust``: what holds the vehicle and its share of the payload
+    at rest, along the vertical (N); NaN: what it has learnt itself.
     """
 
     session: int
@@ -41,13 +43,21 @@ class StopPlanContent(NamedTuple):
     duration: float
     yaw: float
     control_points: Sequence[Sequence[float]]
+    hover_thrust: float = math.nan
 
 
 def stop_plan_message(system_id: int, plan: StopPlanContent) -> Packed:
     """Return TUNNEL with a plan for vehicle ``system_id``."""
-    session, number, start, descent, duration, yaw, points = plan
+    session, number, start, descent, duration, yaw, points, hover_thrust = plan
     content = _CONTENT.pack(
-        session, number, round(start * _US), round(descent * _US), duration, yaw, *chain.from_iterable(points)
+        session,
+        number,
+        round(start * _US),
+        round(descent * _US),
+        duration,
+        yaw,
+        hover_thrust,
+        *chain.from_iterable(points),
     )
     head = _HEAD.pack(PAYLOAD_TYPE, system_id, px4.AUTOPILOT_COMPONENT, len(content))
     return _TUNNEL, (head + content).rstrip(b"\0")
@@ -58,6 +68,8 @@ def read_stop_plan(fields: tuple[Any, ...]) -> StopPlanContent | None:
     payload_type, target_system, _, length = fields[:4]
     if payload_type != PAYLOAD_TYPE or length != _CONTENT.size or not target_system:
         return None
-    session, number, start, descent, duration, yaw, *numbers = _CONTENT.unpack(bytes(fields[4 : 4 + length]))
+    session, number, start, descent, duration, yaw, hover_thrust, *numbers = _CONTENT.unpack(
+        bytes(fields[4 : 4 + length])
+    )
     points = tuple(zip(*[iter(numbers)] * 3, strict=True))
-    return StopPlanContent(session, number, start / _US, descent / _US, duration, yaw, points)
+    return StopPlanContent(session, number, start / _US, descent / _US, duration, yaw, points, hover_thrust)

@@ -25,7 +25,7 @@ from idc_controller.model.linear import LinearModel
 from idc_controller.parameters import SystemParameters
 from idc_controller.safety.filter_protocol import SafetyFilter, SafetyReport
 from idc_controller.trajectory.flatness import FlatReference, PayloadTrajectory, Reference
-from idc_controller.trajectory.trajectory import Trajectory
+from idc_controller.trajectory.trajectory import RestTrajectory, Trajectory
 
 
 class ComputeTime(NamedTuple):
@@ -86,6 +86,8 @@ class IntegratedDecisionController:
         self._hover = self.parameters.hover_thrust
         self._least_lift = settings.least_lift * self.parameters.m * self.parameters.g
         self._tracked: PayloadTrajectory | None = None
+        self._error_limits = settings.position_error_limit, settings.velocity_error_limit
+        """Position (m) and velocity error (m/s) of the payload that are answered at most."""
         self._stopwatch = stopwatch
         self._times = settings.period * np.append(np.arange(tracker.horizon + 1), 0.5)
 
@@ -93,12 +95,24 @@ class IntegratedDecisionController:
         """Return the reference until the next decision, for the estimator; at first the mission itself."""
         return Reference(self.parameters, self._tracked or mission, self.load.estimate)
 
+    def hover_thrusts(self, time: float) -> Array:
+        """Return what holds each UAV at rest under the load as it is learnt, along the vertical (N,) (N).
+
+        Together they leave the payload level, and no link is loaded against another: vehicles that each learnt their
+        own in a manoeuvre would pull it askew.
+        """
+        rest = RestTrajectory(np.zeros(3), time)
+        u = Reference(self.parameters, rest, self.load.estimate).at(np.array([time])).u[0]
+        tilts = u[self.layout.n_setpoint].reshape(-1, 2)
+        return np.asarray(u[self.layout.f_setpoint] * np.sqrt(1.0 - np.square(tilts).sum(axis=1)))
+
     def start(self) -> None:
         """Begin a flight from rest on the ground: the load stays as it was learnt, and the wind."""
         self.load.start()
         self.guidance.start()
         self.safety.start()
         self._tracked = None
+        self._error_limits = self.settings.position_error_limit, self.settings.velocity_error_limit
 
     def decide(
         self,
@@ -125,6 +139,7 @@ class IntegratedDecisionController:
                 self.load.release()
         elif learn_load:
             self.load.learn(estimate)
+            self._error_limits = self._followed_limits()
         reference = Reference(self.parameters, trajectory, self.load.estimate)
         # The stages 0 .. N_p, then the middle of the first: a set-point is held for one period, and the reference's at
         # the middle of it leaves the least error.
@@ -159,13 +174,18 @@ class IntegratedDecisionController:
             detours=self.guidance.detours,
         )
 
-    @property
-    def _error_limits(self) -> tuple[float, float]:
-        """Position (m) and velocity error (m/s) of the payload that are answered at most."""
-        s = self.settings
-        if self.load.wind.air is None:
-            return s.position_error_limit, s.velocity_error_limit
-        return s.position_error_limit_in_wind, s.velocity_error_limit_in_wind
+    def _followed_limits(self) -> tuple[float, float]:
+        """Return the error limits of the next step.
+
+        A wind that is found raises them as the load is followed: a payload that it has displaced is not to be tilted
+        after at once.
+        """
+        s, (position, velocity) = self.settings, self._error_limits
+        wanted = s.position_error_limit, s.velocity_error_limit
+        if self.load.wind.air is not None:
+            wanted = s.position_error_limit_in_wind, s.velocity_error_limit_in_wind
+        share = s.period / s.load_time_constant
+        return position + share * (wanted[0] - position), velocity + share * (wanted[1] - velocity)
 
 
 def plan(

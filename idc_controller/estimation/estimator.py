@@ -158,14 +158,36 @@ class Estimator:
             speed: upward (m/s).
             load: payload's mass; its forces on payload and UAVs are those that the filter has.
         """
-        parameters = self._process.model.parameters.with_payload_mass(load.mass)
-        self._process = process = ProcessModel(LinearModel(parameters), self.settings.process)
-        self._filter = ErrorStateFilter(process)
+        process = self._take_model(load.mass)
         last = self._replay.snapshots[-1]
         x = last.x.copy()
         x[process.layout.f], x[process.layout.v_0.start + 2] = thrusts, -speed
         x[process.force.start + 2], x[process.mass] = load.force[2], load.mass - process.model.parameters.m_0
         self._begin(last.time, x)
+
+    def follow_mass(self, mass: float) -> None:
+        """Take a learnt payload ``mass`` (kg) into the model, where that has become another.
+
+        The links' tension is then that of the model, and with it the motion of payload and UAVs about each other.
+        """
+        before = self._process
+        nominal, g = before.model.parameters.m_0, before.model.parameters.g
+        if abs(mass - nominal) <= self.settings.model_mass_error * nominal:
+            return
+        vertical = before.force.start + 2
+        process = self._take_model(mass)
+        for k, snapshot in enumerate(self._replay.snapshots):
+            x = snapshot.x.copy()
+            carried = nominal + x[process.mass] + x[vertical] / g  # at rest mass and vertical force are the same
+            x[process.mass], x[vertical] = carried - mass, 0.0
+            self._replay.snapshots[k] = snapshot._replace(x=x)
+
+    def _take_model(self, mass: float) -> ProcessModel:
+        """Return the model of a payload of ``mass`` (kg), which is used from now on."""
+        parameters = self._process.model.parameters.with_payload_mass(mass)
+        self._process = process = ProcessModel(LinearModel(parameters), self.settings.process)
+        self._filter = ErrorStateFilter(process)
+        return process
 
     @property
     def time(self) -> float:

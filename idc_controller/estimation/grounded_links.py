@@ -13,11 +13,12 @@ before; the wind's part is that of the others.
 
 import math
 from collections import deque
+from collections.abc import Collection
 from typing import NamedTuple
 
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Mask
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise
 from idc_controller.estimation.settings import GroundedLinksSettings
 from idc_controller.parameters import SystemParameters
@@ -43,6 +44,10 @@ class LinkStates(NamedTuple):
     """f (N,) (N)"""
     drag: Array
     """w (2,) (N)"""
+    payload_velocity: Array = np.zeros(3)
+    """(3,) (m/s)"""
+    located: Mask = np.array(True)
+    """Which UAVs have a position (N,)."""
 
 
 class _Command(NamedTuple):
@@ -75,6 +80,11 @@ class _Payload:
             predicted = self._position + (measurement.time - self._time) * self._velocity
             off = np.clip(measurement.pose - predicted, -s.payload_step_max, s.payload_step_max)
             self._time, self._position = measurement.time, predicted + s.payload_share * off
+
+    @property
+    def velocity(self) -> Array:
+        """Velocity (3,) (m/s) by its unit, within the largest at which a payload slides."""
+        return self._velocity
 
     def attachment(self, place: Array) -> tuple[Array, Array]:
         """Return position (3,) (m) and velocity (3,) (m/s) of the ``place`` (3,) in its frame."""
@@ -111,7 +121,9 @@ class GroundedLinks:
         self._payload = _Payload(0.0, np.zeros(12), s)
         self._commands: deque[_Command] = deque()
 
-    def start(self, time: float, payload: Array, x: Array, thrusts: Array, drag: Array) -> None:
+    def start(
+        self, time: float, payload: Array, x: Array, thrusts: Array, drag: Array, unlocated: Collection[int] = ()
+    ) -> None:
         """Begin at ``time`` (s).
 
         Args:
@@ -120,9 +132,11 @@ class GroundedLinks:
             x: state of the links (6, N, 2).
             thrusts: of the UAVs (N,) (N).
             drag: of the wind on each of them (2,) (N).
+            unlocated: UAVs (from 0) without a position.
         """
         self._payload = _Payload(time, payload, self._settings)
         self._times[:] = self._located[:] = time
+        self._located[[*unlocated]] = -math.inf
         self._common = np.median(x[OFF], axis=0)
         self._own = x[OFF] - self._common
         self._x[:] = x.transpose(1, 0, 2)
@@ -140,8 +154,7 @@ class GroundedLinks:
 
     def _share_errors(self, step: float) -> None:
         """Let UAVs without a position have what the others have in common: the wind, as it is now."""
-        s, errors = self._settings, self._x[:, OFF]
-        located = self._times.max() - self._located < s.position_gap
+        s, errors, located = self._settings, self._x[:, OFF], self._is_located
         if not located.any():
             return
         share = 1.0 - math.exp(-step / s.error_time_constant)
@@ -171,10 +184,23 @@ class GroundedLinks:
         if measurement.has_motion:
             self._update(i, S_DOT, (velocity - measurement.motion)[:2] / p.l[i], self._variance[1] / p.l[i] ** 2)
 
+    @property
+    def _is_located(self) -> Mask:
+        """Which UAVs have a position (N,)."""
+        return np.asarray(self._times.max() - self._located < self._settings.position_gap)
+
+    @property
+    def payload_velocity(self) -> Array:
+        """Velocity of the payload (3,) (m/s)."""
+        return self._payload.velocity
+
     def at(self, time: float) -> LinkStates:
         """Return the states at ``time`` (s), by the set-points until then."""
         states = [self._advanced(i, time)[1] for i in range(len(self._times))]
-        return LinkStates(np.array(states).transpose(1, 0, 2), self._command_at(time).thrusts, self._drag)
+        states_of_links = np.array(states).transpose(1, 0, 2)
+        return LinkStates(
+            states_of_links, self._command_at(time).thrusts, self._drag, self.payload_velocity, self._is_located
+        )
 
     def _command_at(self, time: float) -> _Command:
         at = self._commands[0]

@@ -229,6 +229,8 @@ class EstimatorSettings(SettingsTable):
     gate_probability: Share = 1.0 - 1e-6  # share of nominal measurements accepted
     history: float = 1.0  # s; by which a measurement may be late and is still used
     simultaneous: float = 0.002  # s; within which measurements are of one moment
+    # share of the payload's mass by which the model's may be wrong: the links' frequency is then wrong by half of it
+    model_mass_error: Share = 0.25
     payload_timeout: float = 0.3  # s; without the payload unit until a payload on ground is held
     process: ProcessNoiseSettings = field(default_factory=ProcessNoiseSettings)
     initial: InitialCovarianceSettings = field(default_factory=InitialCovarianceSettings)

@@ -50,7 +50,8 @@ class Team:
         self.heard, self.offboard = [0] * N, [True] * N
         self.descends = [None] * N
         estimator = SimpleNamespace(setpoints=SetpointHistory(N))
-        self.ground = ControlLoop(estimator, SimpleNamespace(parameters=None), ComputeTimes(lambda: 0.0), None)
+        controller = SimpleNamespace(parameters=None, hover_thrusts=lambda time: np.full(N, 10.0))
+        self.ground = ControlLoop(estimator, controller, ComputeTimes(lambda: 0.0), None)
         settings = replace(AutopilotSettings(), failsafe=replace(VehicleFailsafeSettings(), setpoint_loss=loss))
         self.pilots = [Autopilot(AIRFRAME, vehicle_parameters(AIRFRAME, 1 + i, 250, settings)) for i in range(N)]
         for i, pilot in enumerate(self.pilots):

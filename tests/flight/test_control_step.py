@@ -122,6 +122,13 @@ def test_team_at_rest_is_commanded_its_hover_thrusts_straight_up():
     assert np.ptp(decision.thrusts) > 0.1
 
 
+def test_stop_plans_carry_the_thrusts_that_hold_the_learnt_load_at_rest():
+    flown = controller()
+    assert flown.hover_thrusts(5.0) == pytest.approx(P.hover_thrust, abs=1e-6)
+    flown.load.take_mass(0.5 * P.m_0)
+    assert flown.hover_thrusts(5.0).sum() == pytest.approx((0.5 * P.m_0 + P.m.sum()) * P.g)
+
+
 @pytest.mark.parametrize("part", ["r_0", "v_0"])
 @pytest.mark.parametrize("axis", [0, 1])
 @pytest.mark.parametrize("sign", [1.0, -1.0])

@@ -81,6 +81,26 @@ def test_codes_are_unique():
     assert all(row.condition is not None for row in Failsafe if row.check is not Check.EVENT)
 
 
+def test_vehicle_without_all_telemetry_is_not_lifted_off_with_and_flies_on_in_the_air():
+    flight = state(link(1), link(2, attitude_age=0.5))
+    assert evaluated(flight) is None
+    failsafe, trigger = evaluated(flight, phase=Phase.SPOOL_UP)
+    assert failsafe is Failsafe.POSE_MISSING and trigger.vehicles == (1,)
+    assert failsafe.reaction is Reaction.DISARM
+
+
+@pytest.mark.parametrize(("phase", "rise", "steps", "raised"), [
+    (Phase.SPOOL_DOWN, 0.4, 2, True), (Phase.SPOOL_DOWN, 0.4, 1, False), (Phase.SPOOL_DOWN, 0.2, 5, False),
+    (Phase.LAND, 0.4, 5, False),
+])  # fmt: skip
+def test_payload_that_rises_after_touch_down_faster_than_it_bounces_is_landed_anew(phase, rise, steps, raised):
+    flight = state(link(1))
+    flight.system.payload = PayloadMonitor(read_system().parameters())
+    flight.system.links = SimpleNamespace(payload_velocity=np.array([0.0, 0.0, -rise]))
+    found = [evaluated(flight, Check.STEP, phase) for _ in range(steps)][-1]
+    assert (found is not None and found[0] is Failsafe.LIFTED_AGAIN) is raised
+
+
 def test_healthy_links_raise_no_failsafe():
     assert evaluated(state(*(link(i) for i in range(1, 5)))) is None
     assert evaluated(state(link(1, latency=0.1, loss=0.1), link(2, latency=0.045, loss=0.5, answer_age=1.4))) is None

@@ -19,11 +19,12 @@ def touchdown():
     return Touchdown(RestTrajectory(np.zeros(3), 10.0), 0.0, 10.0, OWN, SETTINGS)
 
 
-def thrusts(spool, elapsed, lean=0.0, hover=HOVER):
-    """Thrusts at ``elapsed`` (s) after touch-down with one link that leans."""
+def thrusts(spool, elapsed, lean=0.0, hover=HOVER, speed=0.0, located=True):
+    """Thrusts at ``elapsed`` (s) after touch-down with one link that leans, over a payload that slides."""
     x = np.zeros((6, 4, 2))
     x[S, 2, 1] = lean
-    return spool.thrusts(10.0 + elapsed, hover, LinkStates(x, hover, np.zeros(2)))
+    links = LinkStates(x, hover, np.zeros(2), np.array([speed, 0.0, 0.0]), np.array([True, True, True, located]))
+    return spool.thrusts(10.0 + elapsed, hover, links)
 
 
 def test_spool_down_begins_with_the_payload_and_ends_without_thrust_where_links_are_upright():
@@ -52,3 +53,20 @@ def test_spool_down_waits_for_links_until_its_timeout():
     spool = touchdown()
     assert thrusts(spool, SETTINGS.upright_timeout + 0.05, 1.0) == pytest.approx(STANDING)
     assert not thrusts(spool, SETTINGS.upright_timeout + SETTINGS.spool_down_time + 0.05, 1.0).any()
+
+
+def test_payload_that_slides_is_carried_less_and_the_thrust_does_not_fade_before_it_rests():
+    spool = touchdown()
+    kept = np.array([thrusts(spool, 0.05 * k, speed=0.3)[0] for k in range(60)])
+    assert np.all(np.diff(kept) <= 0.0) and OWN[0] < kept[-1] < OWN[0] + 0.5 * (STANDING[0] - OWN[0])
+    assert thrusts(spool, 3.0 + 0.05)[0] == pytest.approx(kept[-1])
+    assert thrusts(spool, 3.5)[0] < kept[-1]
+
+
+def test_uav_without_a_position_keeps_more_of_its_share_and_stops_with_the_others():
+    spool = touchdown()
+    waiting = thrusts(spool, 1.0, lean=1.0, located=False)
+    assert waiting[:3] == pytest.approx(STANDING[:3])
+    assert waiting[3] == pytest.approx(OWN[3] + SETTINGS.carried_share_unlocated * (HOVER[3] - OWN[3]))
+    fading = np.array([thrusts(spool, 1.05 + 0.05 * k, located=False) for k in range(50)])
+    assert fading[:, 3] / waiting[3] == pytest.approx(fading[:, 0] / waiting[0]) and not fading[-1].any()

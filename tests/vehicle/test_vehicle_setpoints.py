@@ -146,6 +146,18 @@ def test_stop_plan_of_foreign_system_is_not_followed(flying: Bench) -> None:
     assert flying.body.position[0] - x == pytest.approx(0.0, abs=0.3)
 
 
+@pytest.mark.parametrize(("share", "held"), [(1.1, 1.1), (0.1, None), (math.nan, 1.0), (math.inf, 1.0)])
+def test_vehicle_holds_with_the_hover_thrust_of_the_stop_plan(flying: Bench, share: float, held: float | None) -> None:
+    state = flying.vehicle.autopilot.state
+    learnt, weight = state.land.hover_thrust, state.airframe.mass * state.airframe.g
+    assert learnt is not None
+    flying.send(stop_plan(flying, flying.now, hover_thrust=share * learnt))
+    flying.streaming.clear()
+    flying.run(1.0)
+    assert state.hold is not None
+    assert state.hold.hover_thrust == pytest.approx(weight if held is None else held * learnt, rel=0.02)
+
+
 def test_repeated_hold_command_continues_stop_plan(flying: Bench) -> None:
     x = flying.body.position[0]
     flying.send(stop_plan(flying, flying.now, x=3.0))

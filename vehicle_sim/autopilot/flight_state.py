@@ -146,6 +146,8 @@ class FlightState:
         if not self.land.in_air:
             self.land.lift(thrust)
         hover = self.land.hover_thrust or max(thrust, weight)
+        if sent is not None and math.isfinite(sent.hover_thrust):  # that of the whole team
+            hover = min(max(sent.hover_thrust, weight), self.airframe.rotors.thrust_max)
         self.hold = HoldController(plan, hover, self.supported_thrust, self.airframe.g, settings)
 
     def begin_descent(self, now: float) -> None:

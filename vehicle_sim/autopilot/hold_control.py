@@ -119,7 +119,7 @@ class HoldController:
     ) -> None:
         """``hover_thrust`` and the least thrust while in the air in N, ``g`` in m/s2."""
         self.plan = plan
-        self._hover_thrust = hover_thrust
+        self.hover_thrust = hover_thrust
         self._thrust_min = thrust_min
         self._up_min = min(thrust_min / hover_thrust, 1.0) * g
         self._g = g
@@ -148,7 +148,7 @@ class HoldController:
         else:
             self._supported = None
             position, velocity, acceleration = self.plan.at(now)
-            carried, thrust_max = self._hover_thrust, math.inf
+            carried, thrust_max = self.hover_thrust, math.inf
         v_x, v_y, v_z = measured.velocity
         error_x, error_y = position[0] - x, position[1] - y
         step = min(max(now - self._last_time, 0.0), gains.step_max)
@@ -167,7 +167,7 @@ class HoldController:
         # Downwards as far as the least thrust allows: of a load that was lost, the learned thrust still carries all.
         up = min(max(g - a_z, self._up_min), (1.0 + gains.vertical_max) * g)
         # The integral holds a link that leans: it goes with the link's tension, which the ground takes over.
-        pulls = (carried * up / g - self._thrust_min) / max(self._hover_thrust - self._thrust_min, 1e-3)
+        pulls = (carried * up / g - self._thrust_min) / max(self.hover_thrust - self._thrust_min, 1e-3)
         i_x, i_y = min(max(pulls, 0.0), 1.0) * i_x, min(max(pulls, 0.0), 1.0) * i_y
 
         a_x = acceleration[0] + gains.horizontal_kp * error_x + gains.horizontal_kd * (velocity[0] - v_x) + i_x

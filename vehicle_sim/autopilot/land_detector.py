@@ -9,6 +9,7 @@ from vehicle_sim.autopilot.onboard_kernels import (
     HOVER_THRUST,
     IN_AIR,
     LAST_TIME,
+    LIFTED_AT,
     STANDING_SINCE,
     THRUST_MAX,
     TOUCHING_SINCE,
@@ -44,7 +45,11 @@ class LandDetector:
 
     @property
     def hover_thrust(self) -> float | None:
-        """The vertical thrust that it flew with (N), low-passed; None before the first flight."""
+        """The thrust (N) that holds the vehicle and its share of the payload at rest; None before the first flight.
+
+        By thrust over specific force, low-passed, as PX4's estimator of the hover thrust has it: a vehicle that is
+        accelerated carries no other mass.
+        """
         thrust = float(self._found[HOVER_THRUST])
         return None if math.isnan(thrust) else thrust
 
@@ -62,4 +67,5 @@ class LandDetector:
     def lift(self, thrust: float) -> None:
         """Take the vehicle to fly: it is upright on its link only by its ``thrust`` (N), also before it rises."""
         self._found[IN_AIR] = 1.0
+        self._found[LIFTED_AT] = self._found[LAST_TIME]
         self._found[HOVER_THRUST] = min(max(thrust, self._detector[WEIGHT]), self._detector[THRUST_MAX])

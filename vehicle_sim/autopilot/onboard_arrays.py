@@ -14,6 +14,8 @@ from vehicle_sim.autopilot.onboard_kernels import (
     IN_AIR,
     LANDING_COLUMNS,
     LAST_TIME,
+    LIFT,
+    LIFTED_AT,
     RATE,
     RATE_CHECK_COLUMNS,
     RATES_ERROR_MAX,
@@ -78,7 +80,8 @@ class OnboardArrays:
         rate_checks[:, RATES_ERROR_MAX] = max(navigation.rates_sigmas * of_two, navigation.rates_error)
         rate_checks[:, [RATES_WINDOW, RATES_REFUSED]] = navigation.rates_window, navigation.rates_refused
         landings = np.full((n, LANDING_COLUMNS), np.nan)
-        landings[:, [VELOCITY, RATE, LAST_TIME, IN_AIR]] = 0.0
+        landings[:, [VELOCITY, RATE, LIFT, LAST_TIME, IN_AIR]] = 0.0
+        landings[:, LIFTED_AT] = -np.inf
         landings[:, [STANDING_SINCE, TOUCHING_SINCE]] = np.inf
         return cls(
             np.array([_airframe(airframe) for airframe in airframes]),
@@ -115,5 +118,5 @@ def _detector(airframe: Airframe, settings: LandDetectorSettings) -> list[float]
         airframe.mass * airframe.g, airframe.rotors.thrust_max, settings.lifted, settings.vertical_speed_max,
         settings.time, settings.touchdown_thrust, settings.touchdown_sinking, settings.velocity_filter,
         settings.altitude_filter, settings.hover_filter, settings.altitude_tolerance,
-        settings.time_elsewhere,
+        settings.time_elsewhere, airframe.g,
     ]  # fmt: skip

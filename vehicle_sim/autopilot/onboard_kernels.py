@@ -22,17 +22,19 @@ TARGET_COLUMNS = 9
 TWO_KP, KD, FORCE_MAX, PER_ROLL_PITCH, PER_YAW, PER_K_F = 6, 7, 8, 9, 10, 11
 
 # Columns of ``landings``: what the detector has found; NaN: not known yet. Times in s, m, m/s, N. VELOCITY is that of
-# the sensor, RATE that of the altitude, both low-passed; LAST_Z and LAST_V_Z are of the last sample.
+# the sensor, RATE that of the altitude, LIFT the thrust along the vertical, all low-passed; LAST_Z and LAST_V_Z are of
+# the last sample; LIFTED_AT: when it lifted off.
 (
     ALTITUDE, VELOCITY, GROUND, LAST_TIME, STANDING_SINCE, TOUCHING_SINCE, HOVER_THRUST, IN_AIR, RATE, LAST_Z, LAST_V_Z,
-) = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10  # fmt: skip
-LANDING_COLUMNS = 11
+    LIFT, LIFTED_AT,
+) = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12  # fmt: skip
+LANDING_COLUMNS = 13
 
-# Columns of ``detectors``: the vehicle's weight and largest thrust (N), and the settings of these names.
+# Columns of ``detectors``: the vehicle's weight and largest thrust (N), gravity (m/s2), and settings of these names.
 (
     WEIGHT, THRUST_MAX, LIFTED, VERTICAL_SPEED_MAX, TIME, TOUCHDOWN_THRUST, TOUCHDOWN_SINKING, VELOCITY_FILTER,
-    ALTITUDE_FILTER, HOVER_FILTER, ALTITUDE_TOLERANCE, TIME_ELSEWHERE,
-) = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11  # fmt: skip
+    ALTITUDE_FILTER, HOVER_FILTER, ALTITUDE_TOLERANCE, TIME_ELSEWHERE, GRAVITY,
+) = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12  # fmt: skip
 
 # Columns of ``stamps``: the time of the last fresh sample, and when it came (s); -inf: there has been none.
 SAMPLE_TIME, FRESH_AT = 0, 1
@@ -236,18 +238,24 @@ def detect_landings(
         behind = z - found[ALTITUDE]
         found[ALTITUDE] += behind * step / (d[ALTITUDE_FILTER] + step)
         found[RATE] += (behind / d[ALTITUDE_FILTER] - found[RATE]) * step / (d[VELOCITY_FILTER] + step)
-        found[VELOCITY] += (v_z - found[VELOCITY]) * step / (d[VELOCITY_FILTER] + step)
+        rise = (found[VELOCITY] - v_z) / (d[VELOCITY_FILTER] + step)  # acceleration upwards, of the same filter
+        found[VELOCITY] -= rise * step
         x, y = s[4], s[5]
-        lift = min(max(thrust * (1.0 - 2.0 * (x * x + y * y)), d[WEIGHT]), d[THRUST_MAX])
+        found[LIFT] += (thrust * (1.0 - 2.0 * (x * x + y * y)) - found[LIFT]) * step / (d[VELOCITY_FILTER] + step)
+        # What it carries moves with it, at any acceleration; in free fall nothing is known.
+        carried = found[LIFT] * d[GRAVITY] / max(d[GRAVITY] + rise, 0.1 * d[GRAVITY])
+        carried = min(max(carried, d[WEIGHT]), d[THRUST_MAX])
         if found[IN_AIR] == 0.0:
             if found[GROUND] - found[ALTITUDE] > d[LIFTED]:  # not where the ground is not known
                 found[IN_AIR] = 1.0
-                found[HOVER_THRUST] = lift
+                found[HOVER_THRUST], found[LIFTED_AT] = carried, now
                 idle_until[i] = -math.inf
             continue
         if math.isnan(found[HOVER_THRUST]) or learns[i]:
-            hover = lift if math.isnan(found[HOVER_THRUST]) else found[HOVER_THRUST]
-            found[HOVER_THRUST] = hover + (lift - hover) * step / (d[HOVER_FILTER] + step)
+            hover = carried if math.isnan(found[HOVER_THRUST]) else found[HOVER_THRUST]
+            # The mean since lift-off, later low-passed.
+            memory = min(d[VELOCITY_FILTER] + now - found[LIFTED_AT], d[HOVER_FILTER])
+            found[HOVER_THRUST] = hover + (carried - hover) * step / (memory + step)
         # A position and velocity that repeat are no measurement, unless the vehicle is known to stand.
         stuck = z == found[LAST_Z] and v_z == found[LAST_V_Z] and v_z != 0.0
         found[LAST_Z], found[LAST_V_Z] = z, v_z

@@ -33,8 +33,9 @@ _CODES: dict[tuple[str, ...], str] = {
     "innovation_noise sensor_noise positions_lost telemetry_incomplete attitude_wrong attitude_misaligned",
     (RANGE_SENSOR,): "range_sensor_failed range_sensor_silent range_sensor_displaced obstacle_sensing_lost",
     (SYSTEM_ID,): "id_swap duplicate_system_id",
-    (FORCE,): "covariance_reset disturbance_force process_noise plan_deviation_exceeded wind_exceeded unloading_failed",
-    (LINK, NAVIGATION): "telemetry_timeout",
+    (FORCE,): "covariance_reset disturbance_force process_noise plan_deviation_exceeded wind_exceeded unloading_failed "
+    "lifted_again",
+    (LINK, NAVIGATION): "telemetry_timeout pose_missing",
     (NAVIGATION, RANGE_SENSOR): "values_not_finite vehicle_map_offset map_offset",
 }
 NAMED_PARTS = {code: parts for parts, codes in _CODES.items() for code in codes.split()}
