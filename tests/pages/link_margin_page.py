@@ -86,12 +86,12 @@ def margins() -> list[dict[str, str]]:
     return rows
 
 
-def fly(start: Start, latency: float, loss: float) -> Flown:
+def fly(start: Start, latency: float, loss: float, seed: int = SEED) -> Flown:
     """Fly one case."""
     begin = {"start": start.start}
     faults = [{"kind": "latency", "delay": latency, **begin}] if latency else []
     faults += [{"kind": "packet_loss", "probability": loss, **begin}] if loss else []
-    figures = gcs.fly(start.mission, seed=SEED, faults=faults).figures
+    figures = gcs.fly(start.mission, seed=seed, faults=faults).figures
     tilt = max(figures["payload_tilt_max_deg"].values())
     return Flown(figures["outcome"], tilt, figures["uav_separation_min_m"], figures["contacts"])
 
