@@ -18,7 +18,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help install fly test test-fast test-long test-lowest test-numerics release golden golden-renew page
 .PHONY: claims claims-all claims-write fault-tables anew benchmark benchmark-campaign benchmark-check benchmark-view
-.PHONY: benchmark-flood process-faults docs pictures clean
+.PHONY: benchmark-flood process-faults link-margin docs pictures clean
 
 help:
 	@echo "make fly          fly $(MISSION) with a simulated swarm (MISSION=... for another one)"
@@ -40,6 +40,7 @@ help:
 	@echo "make benchmark-campaign  throughput of parallel flights against a single one's"
 	@echo "make benchmark-view   CPU cost of a flight with its live view against that without"
 	@echo "make benchmark-flood  a vehicle's telemetry while another vehicle's port is flooded"
+	@echo "make link-margin  fly over latency and loss, and write the tables and the picture of docs/link-margin.md (about 5 min of CPU)"
 	@echo "make process-faults   flights in real time of which a process is killed or suspended"
 	@echo "make docs         write docs/settings.md, failsafes.md, autopilots.md, services.md and NOTICE from what they are about"
 	@echo "make pictures     fly, film and photograph the pictures of README.md (needs Chromium; about 6 min of CPU)"
@@ -122,6 +123,9 @@ process-faults: $(COMPILED)
 
 benchmark-check: $(COMPILED)
 	$(VENV)/bin/python tests/benchmarks/check.py --base $(BASE)
+
+link-margin: $(COMPILED)
+	$(VENV)/bin/python tests/pages/link_margin_page.py docs/link-margin.md
 
 docs: $(INSTALLED)
 	$(VENV)/bin/python tests/pages/settings_page.py > docs/settings.md

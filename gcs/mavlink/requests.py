@@ -117,7 +117,7 @@ class Requests:
         for command in [*self._pending.values()]:
             if now < command.next_try:
                 continue
-            if command.tries >= self.settings.tries:
+            if command.tries >= self.settings.command_tries:
                 command.state = CommandState.UNANSWERED
                 del self._pending[command.number]
                 continue
@@ -125,7 +125,7 @@ class Requests:
                 mavlink.MAVLink_command_long_message(*target, command.number, command.tries, *command.parameters)
             )
             command.tries += 1
-            command.next_try = now + self.settings.retry_interval
+            command.next_try = now + self.settings.command_interval
         return messages
 
     @property

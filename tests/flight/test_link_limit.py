@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from link_margin_page import hover_loop, margins
+from link_margin_page import STARTS, fly, hover_loop, margins
 from page_tables import markdown_table
 
 from gcs.config import SystemConfig
@@ -59,3 +59,14 @@ def test_loop_whose_delay_is_not_compensated_is_unstable_beyond_its_margin(loop)
 def test_table_of_the_page_is_the_computed_one():
     page = (Path(__file__).parents[2] / "docs" / "link-margin.md").read_text(encoding="utf-8")
     assert markdown_table(margins()) in page, "run tests/pages/link_margin_page.py docs/link-margin.md --margins"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("latency", "loss"),
+    # The command to hold is lost on its way to vehicle 3.
+    [(0.1, 0.2), pytest.param(0.15, 0.5, marks=pytest.mark.long)],
+)
+def test_vehicles_are_landed_together_where_the_command_to_one_of_them_is_lost(latency, loss):
+    flown = fly(STARTS[1], latency, loss, seed=7719)
+    assert flown.outcome == "aborted" and not flown.is_lost, flown

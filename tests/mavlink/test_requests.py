@@ -38,8 +38,9 @@ def test_parameter_is_requested_at_once_and_again_until_it_is_known():
 
 def test_command_is_repeated_with_its_number_of_tries_until_it_counts_as_unanswered(requests):
     command = requests.command(ARM, 1.0)
-    sent = [message for k in range(50) for message in requests.due(0.5 * RETRY * k)]
-    assert [message.confirmation for message in sent] == list(range(SETTINGS.tries))
+    interval, tries = SETTINGS.command_interval, SETTINGS.command_tries
+    sent = [message for k in range(5 * tries) for message in requests.due(0.5 * interval * k)]
+    assert [message.confirmation for message in sent] == list(range(tries))
     assert {(message.target_system, message.command, message.param1, message.param7) for message in sent} == {
         (3, ARM, 1.0, 0.0)
     }

@@ -24,8 +24,8 @@ from idc_controller.control.delay_margin import HoverLoop, expected_extra_age
 from idc_controller.control.mpc import ModelPredictiveController
 
 HERE = Path(__file__).parent
-LATENCIES = (0.0, 0.05, 0.1, 0.15)
-LOSSES = (0.0, 0.1, 0.2, 0.3, 0.5)
+LATENCIES = (0.0, 0.05, 0.1, 0.125, 0.15)
+LOSSES = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)
 MARGIN_LATENCIES = (0.0, 0.025, 0.05, 0.075, 0.11, 0.15)
 SEED = 4101
 TOP_SPEED_AT = 9.5  # s after take-off: the lap's first leg is flown at 3 m/s
@@ -86,12 +86,12 @@ def margins() -> list[dict[str, str]]:
     return rows
 
 
-def fly(start: Start, latency: float, loss: float) -> Flown:
+def fly(start: Start, latency: float, loss: float, seed: int = SEED) -> Flown:
     """Fly one case."""
     begin = {"start": start.start}
     faults = [{"kind": "latency", "delay": latency, **begin}] if latency else []
     faults += [{"kind": "packet_loss", "probability": loss, **begin}] if loss else []
-    figures = gcs.fly(start.mission, seed=SEED, faults=faults).figures
+    figures = gcs.fly(start.mission, seed=seed, faults=faults).figures
     tilt = max(figures["payload_tilt_max_deg"].values())
     return Flown(figures["outcome"], tilt, figures["uav_separation_min_m"], figures["contacts"])
 
@@ -135,7 +135,7 @@ def rows(flown: dict[tuple[Start, float, float], Flown]) -> list[dict[str, str]]
 
 def draw(flown: dict[tuple[Start, float, float], Flown]) -> Figure:
     """Return the picture: one square a flight, by its end, with the largest payload angle in it (deg)."""
-    figure = Figure(figsize=(8.0, 3.6), layout="constrained")
+    figure = Figure(figsize=(8.0, 4.2), layout="constrained")
     colours = {"completed": "#7fbf7f", "aborted": "#f2c46d"}
     for axes, start in zip(figure.subplots(1, len(STARTS), sharey=True), STARTS, strict=True):
         for (of, latency, loss), flight in flown.items():
