@@ -128,10 +128,7 @@ class GroundStation:
         self._stepped = self._control.is_due(now)
         times.lap(Part.SETPOINTS)
         if self.flight.check_links(self._clock.time(now), now):
-            # The stop plan goes out before the command to stop, or vehicles stop by another one.
             self._schedule.clear()
-            for queue, stop in zip(messages, self._setpoint_messages(now, None), strict=True):
-                queue += stop
         if self._stepped and self._control.begin(now, self._clock, connecting=self.flight.phase is Phase.CONNECT):
             record = self._step(now, messages)
         times.lap(Part.MONITORING)
@@ -139,9 +136,13 @@ class GroundStation:
         for i, due in self._schedule.take(now):
             messages[i].extend(due)
             carries_setpoints[i] = True
-        for link, queue in zip(links, messages, strict=True):
-            if requests := link.requests.due(now):
-                queue += packed(*requests)
+        requests = [link.requests.due(now) for link in links]
+        if self.flight.phase is Phase.AUTONOMOUS_LANDING and any(requests) and not self._stepped:
+            # The stop plan goes out before every command to stop, or a vehicle stops by another one.
+            for queue, stop in zip(messages, self._setpoint_messages(now, None), strict=True):
+                queue += stop
+        for queue, due_now in zip(messages, requests, strict=True):
+            queue += packed(*due_now)
         out = self._encoded(now, messages, carries_setpoints)
         self._recorder.end_exchange()
         times.lap(Part.RECORDING)
