@@ -79,6 +79,9 @@ class HoldSettings(SettingsTable):
     horizontal_kd: float = 1.5  # 1/s; horizontal velocity gain
     horizontal_ki: float = 0.1  # 1/s3; horizontal integral gain
     integral_max: float = 2.5  # m/s2; largest integral part
+    # s; longer than a link takes to swing back, and so short that the drift of a reckoned velocity (by 0.2 deg of
+    # attitude error) stays at 0.1 m/s
+    reckoning_washout: float = 3.0
     vertical_kp: float = 3.2  # 1/s2; altitude gain
     vertical_kd: float = 4.5  # 1/s; vertical velocity gain
     horizontal_max: float = 0.35  # g; largest horizontal acceleration

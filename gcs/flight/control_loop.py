@@ -136,7 +136,7 @@ class ControlLoop:
         plan = stop_plan(self.controller.parameters, record.decision.flat, effective, record.estimate.x, self.brake)
         plans = self.stop_plans
         plans.append(
-            plan._replace(descent=effective + hold.duration, hover_thrusts=self.controller.hover_thrusts(effective))
+            plan._replace(descent=effective + hold.duration, hover_forces=self.controller.hover_forces(effective))
         )
         received = self.estimator.setpoints.received_by_all(effective, hold.unconfirmed_max)
         while len(plans) > 1 and plans[1].start <= received:

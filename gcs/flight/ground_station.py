@@ -66,6 +66,10 @@ class Recorder(Protocol):
         """Record a new alarm."""
 
 
+_UNKNOWN = (math.nan, math.nan, math.nan)
+"""A hover force that is not known."""
+
+
 class GroundStation:
     """All vehicles of one flight. A driver calls :meth:`receive`, :meth:`datagrams_to_send` and :meth:`next_timer`."""
 
@@ -244,12 +248,12 @@ class GroundStation:
             if self._plan_number == 1:
                 self._session = round(now * 1e3) & 0xFFFFFFFF
             paths = plan.control_points.tolist()
-            hover = [math.nan] * len(paths) if plan.hover_thrusts is None else plan.hover_thrusts.tolist()
-            for link, queue, points, thrust in zip(self.links, messages, paths, hover, strict=True):
+            forces = [_UNKNOWN] * len(paths) if plan.hover_forces is None else plan.hover_forces.tolist()
+            for link, queue, points, force in zip(self.links, messages, paths, forces, strict=True):
                 ahead = link.clock.offset - self._clock.offset
                 start, descent = plan.start + ahead, plan.descent + ahead
                 content = StopPlanContent(
-                    self._session, self._plan_number, start, descent, plan.duration, 0.0, points, thrust
+                    self._session, self._plan_number, start, descent, plan.duration, 0.0, points, force
                 )
                 queue.append(stop_plan_message(link.system_id, content))
         if setpoints is not None:

@@ -23,7 +23,7 @@ with: by then the loss of a vehicle that confirms none has been detected.
 _TUNNEL = LAYOUTS[mavlink.MAVLINK_MSG_ID_TUNNEL]
 _HEAD = struct.Struct("<H3B")
 """Fields of TUNNEL before its content: packed number by number, that would take longer than all the rest."""
-_CONTENT = struct.Struct(f"<2I2q3f{3 * POINTS}f")
+_CONTENT = struct.Struct(f"<2I2q2f3f{3 * POINTS}f")
 _US = 1e6
 
 
@@ -32,8 +32,8 @@ class StopPlanContent(NamedTuple):
 
     ``session``: a number of the ground's own, another one whenever it is started anew; ``number``: of the plan in that
     session, rising. ``start`` of the stop and ``duration`` (s); ``descent``: when all vehicles descend. ``yaw`` (rad);
-    ``control_points``: five of its path (m, NED). ``hover_thrust``: what holds the vehicle and its share of the payload
-    at rest, along the vertical (N); NaN: what it has learnt itself.
+    ``control_points``: five of its path (m, NED). ``hover_force``: of the thrust that holds the vehicle and its share
+    of the payload at rest, in the wind as it is (N, NED); NaN: not known.
     """
 
     session: int
@@ -43,12 +43,12 @@ class StopPlanContent(NamedTuple):
     duration: float
     yaw: float
     control_points: Sequence[Sequence[float]]
-    hover_thrust: float = math.nan
+    hover_force: Sequence[float] = (math.nan,) * 3
 
 
 def stop_plan_message(system_id: int, plan: StopPlanContent) -> Packed:
     """Return TUNNEL with a plan for vehicle ``system_id``."""
-    session, number, start, descent, duration, yaw, points, hover_thrust = plan
+    session, number, start, descent, duration, yaw, points, hover_force = plan
     content = _CONTENT.pack(
         session,
         number,
@@ -56,7 +56,7 @@ def stop_plan_message(system_id: int, plan: StopPlanContent) -> Packed:
         round(descent * _US),
         duration,
         yaw,
-        hover_thrust,
+        *hover_force,
         *chain.from_iterable(points),
     )
     head = _HEAD.pack(PAYLOAD_TYPE, system_id, px4.AUTOPILOT_COMPONENT, len(content))
@@ -68,8 +68,6 @@ def read_stop_plan(fields: tuple[Any, ...]) -> StopPlanContent | None:
     payload_type, target_system, _, length = fields[:4]
     if payload_type != PAYLOAD_TYPE or length != _CONTENT.size or not target_system:
         return None
-    session, number, start, descent, duration, yaw, hover_thrust, *numbers = _CONTENT.unpack(
-        bytes(fields[4 : 4 + length])
-    )
-    points = tuple(zip(*[iter(numbers)] * 3, strict=True))
-    return StopPlanContent(session, number, start / _US, descent / _US, duration, yaw, points, hover_thrust)
+    session, number, start, descent, duration, yaw, *numbers = _CONTENT.unpack(bytes(fields[4 : 4 + length]))
+    force, *points = zip(*[iter(numbers)] * 3, strict=True)
+    return StopPlanContent(session, number, start / _US, descent / _US, duration, yaw, tuple(points), force)

@@ -95,16 +95,18 @@ class IntegratedDecisionController:
         """Return the reference until the next decision, for the estimator; at first the mission itself."""
         return Reference(self.parameters, self._tracked or mission, self.load.estimate)
 
-    def hover_thrusts(self, time: float) -> Array:
-        """Return what holds each UAV at rest under the load as it is learnt, along the vertical (N,) (N).
+    def hover_forces(self, time: float) -> Array:
+        """Return the thrusts that hold each UAV at rest under the load as it is learnt, in the wind (N, 3) (N, NED).
 
         Together they leave the payload level, and no link is loaded against another: vehicles that each learnt their
         own in a manoeuvre would pull it askew.
         """
         rest = RestTrajectory(np.zeros(3), time)
         u = Reference(self.parameters, rest, self.load.estimate).at(np.array([time])).u[0]
+        thrusts = u[self.layout.f_setpoint, None]
         tilts = u[self.layout.n_setpoint].reshape(-1, 2)
-        return np.asarray(u[self.layout.f_setpoint] * np.sqrt(1.0 - np.square(tilts).sum(axis=1)))
+        down = -np.sqrt(1.0 - np.square(tilts).sum(axis=1, keepdims=True))
+        return np.asarray(thrusts * np.hstack([tilts, down]))
 
     def start(self) -> None:
         """Begin a flight from rest on the ground: the load stays as it was learnt, and the wind."""

@@ -48,8 +48,8 @@ class StopPlan(NamedTuple):
     """(N, 5, 3) (m, NED)."""
     descent: float = math.inf
     """Time at which all UAVs descend (s)."""
-    hover_thrusts: Array | None = None
-    """Of the UAVs, along the vertical (N,) (N); None: not known."""
+    hover_forces: Array | None = None
+    """Thrusts that hold each UAV at rest (N, 3) (N, NED); None: not known."""
 
     def payload_positions(self, parameters: SystemParameters, elapsed: Array) -> Array:
         """Return where a level payload that hangs at rest below the UAVs is (K, 3) (m, NED), by their mean.

@@ -50,7 +50,7 @@ class Team:
         self.heard, self.offboard = [0] * N, [True] * N
         self.descends = [None] * N
         estimator = SimpleNamespace(setpoints=SetpointHistory(N))
-        controller = SimpleNamespace(parameters=None, hover_thrusts=lambda time: np.full(N, 10.0))
+        controller = SimpleNamespace(parameters=None, hover_forces=lambda time: np.tile([0.0, 0.0, -10.0], (N, 1)))
         self.ground = ControlLoop(estimator, controller, ComputeTimes(lambda: 0.0), None)
         settings = replace(AutopilotSettings(), failsafe=replace(VehicleFailsafeSettings(), setpoint_loss=loss))
         self.pilots = [Autopilot(AIRFRAME, vehicle_parameters(AIRFRAME, 1 + i, 250, settings)) for i in range(N)]

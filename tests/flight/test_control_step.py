@@ -124,9 +124,16 @@ def test_team_at_rest_is_commanded_its_hover_thrusts_straight_up():
 
 def test_stop_plans_carry_the_thrusts_that_hold_the_learnt_load_at_rest():
     flown = controller()
-    assert flown.hover_thrusts(5.0) == pytest.approx(P.hover_thrust, abs=1e-6)
+    assert flown.hover_forces(5.0) == pytest.approx(np.outer(P.hover_thrust, [0.0, 0.0, -1.0]), abs=1e-6)
     flown.load.take_mass(0.5 * P.m_0)
-    assert flown.hover_thrusts(5.0).sum() == pytest.approx((0.5 * P.m_0 + P.m.sum()) * P.g)
+    assert flown.hover_forces(5.0)[:, 2].sum() == pytest.approx(-(0.5 * P.m_0 + P.m.sum()) * P.g)
+
+
+def test_stop_plans_carry_the_thrusts_that_hold_the_load_against_a_force():
+    flown, force = controller(), np.array([2.0, -1.0, 0.0])
+    for _ in range(2000):
+        flown.load.learn(estimated(force=force))
+    assert flown.hover_forces(5.0).sum(axis=0)[:2] == pytest.approx(-force[:2], rel=0.02)
 
 
 @pytest.mark.parametrize("part", ["r_0", "v_0"])

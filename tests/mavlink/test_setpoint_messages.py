@@ -41,13 +41,13 @@ def test_setpoint_is_packed_as_by_pymavlink(system, boot_time, tilt, heading, th
     st.floats(-10.0, 3600.0), st.floats(0.0, 100.0), st.lists(POINT, min_size=5, max_size=5),
 )  # fmt: skip
 def test_stop_plan_is_read_by_its_vehicle_as_it_was_sent(system, session, number, start, hold, duration, points):
-    plan = StopPlanContent(session, number, start, start + hold, duration, 0.5, points, 12.5)
+    plan = StopPlanContent(session, number, start, start + hold, duration, 0.5, points, (1.5, -0.25, -12.5))
     [on_wire] = Codec(system, 1).decode(Codec(255, 190).frame(stop_plan_message(system, plan)))
     assert on_wire.is_for(system, px4.AUTOPILOT_COMPONENT) and not on_wire.is_for(system % 255 + 1)
     read = read_stop_plan(on_wire.fields)
     assert read is not None and read[:2] == (session, number)
     assert read[2:6] == pytest.approx(plan[2:6], rel=1e-6, abs=1e-6)
-    assert read.hover_thrust == 12.5
+    assert read.hover_force == (1.5, -0.25, -12.5)
     for own, sent in zip(read.control_points, points, strict=True):
         assert own == pytest.approx(sent, rel=1e-6, abs=1e-30)
 

@@ -18,6 +18,8 @@ GAINS = HoldSettings()
 G = 9.81
 HOVER, LEAST = 20.0, 12.0
 """N: thrust that carries the vehicle and its share of the payload, and the vehicle alone."""
+CALM = (0.0, 0.0)
+"""Lean against no wind."""
 HERE = (3.0, -2.0, -6.0)
 STAY = HoldPlan(0.0, 1.0, (HERE,) * 5, 0.4)
 
@@ -80,7 +82,7 @@ def test_force_follows_from_plan_and_measurement(seed, spread, integral_max):
     descent = () if random.random() < 0.5 else (1.5, 0.6, 0.8)
     plan = HoldPlan.to_rest(0.5, HERE, (1.5, -1.0, 0.4), 0.4, BrakingSettings(), *descent)
     gains = replace(GAINS, integral_max=integral_max)
-    controller, plain = HoldController(plan, HOVER, LEAST, G, gains), PlainHold(plan, integral_max)
+    controller, plain = HoldController(plan, HOVER, CALM, LEAST, G, gains), PlainHold(plan, integral_max)
     now = 0.4
     for _ in range(40):
         sample = measured(np.array(plan.at(now).position) + spread * random.normal(size=3), random.normal(size=3))
@@ -95,7 +97,7 @@ def test_force_follows_from_plan_and_measurement(seed, spread, integral_max):
 
 
 def test_vehicle_at_its_place_hovers_with_the_yaw_of_the_plan():
-    attitude, thrust = HoldController(STAY, HOVER, LEAST, G, GAINS).command(measured(), 1.0)
+    attitude, thrust = HoldController(STAY, HOVER, CALM, LEAST, G, GAINS).command(measured(), 1.0)
     assert attitude == pytest.approx((math.cos(0.2), 0.0, 0.0, math.sin(0.2)))
     assert thrust == pytest.approx(HOVER)
 
@@ -103,21 +105,36 @@ def test_vehicle_at_its_place_hovers_with_the_yaw_of_the_plan():
 @pytest.mark.parametrize(("aside", "down"), [((50.0, 0.0), 0.0), ((-30.0, 40.0), 0.0), ((0.0, 0.0), -50.0)])
 def test_far_from_its_place_acceleration_is_at_its_limit_towards_it(aside, down):
     position = np.add(HERE, (*aside, down))
-    force = force_of(HoldController(STAY, HOVER, LEAST, G, GAINS).command(measured(position), 0.0)) / HOVER
+    force = force_of(HoldController(STAY, HOVER, CALM, LEAST, G, GAINS).command(measured(position), 0.0)) / HOVER
     size = np.hypot(*aside)
     level = np.zeros(2) if size == 0.0 else -GAINS.horizontal_max * np.array(aside) / size
     vertical = -LEAST / HOVER if down < 0.0 else -1.0
     np.testing.assert_allclose(force, [*level, vertical], atol=1e-9)
 
 
+def test_vehicle_leans_against_the_wind_of_the_stop_plan_at_once():
+    force = force_of(HoldController(STAY, HOVER, (0.1, -0.05), LEAST, G, GAINS).command(measured(), 0.0)) / HOVER
+    np.testing.assert_allclose(force, [0.1, -0.05, -1.0], atol=1e-9)
+
+
+def test_error_by_dead_reckoning_is_followed_at_first_and_not_for_good():
+    controller = HoldController(STAY, HOVER, CALM, LEAST, G, GAINS)
+    beside = measured(np.add(HERE, (0.5, 0.0, 0.0)), (0.0, 0.2, 0.0))
+    forces = [force_of(controller.command(beside, 0.02 * k, reckoned=True)) for k in range(1501)]
+    wanted = -HOVER / G * np.array([0.5 * GAINS.horizontal_kp, 0.2 * GAINS.horizontal_kd])
+    np.testing.assert_allclose(forces[0][:2], wanted, rtol=0.02)
+    integral = HOVER / G * GAINS.horizontal_ki * 0.5 * GAINS.reckoning_washout  # that of the error while it lasted
+    np.testing.assert_allclose(forces[-1][:2], [-integral, 0.0], rtol=0.02, atol=1e-3)
+
+
 def test_thrust_is_never_less_than_the_least_in_the_air():
     above = np.array(HERE) - [0.0, 0.0, 50.0]
-    assert HoldController(STAY, HOVER, 15.0, G, GAINS).command(measured(above), 0.0)[1] == 15.0
+    assert HoldController(STAY, HOVER, CALM, 15.0, G, GAINS).command(measured(above), 0.0)[1] == 15.0
 
 
 def test_vehicle_of_a_standing_payload_stays_where_it_was_then():
     """It hands the payload over with what holds its link, and forgets nothing that it has learned of the wind."""
-    controller = HoldController(STAY, HOVER, LEAST, G, GAINS)
+    controller = HoldController(STAY, HOVER, CALM, LEAST, G, GAINS)
     for k in range(20):
         before = controller.command(measured((2.0, -2.0, -6.0)), 0.1 * k)
     beside, handed_over = measured((9.0, 9.0, -3.0)), before[1]

@@ -151,7 +151,7 @@ def test_vehicle_holds_with_the_hover_thrust_of_the_stop_plan(flying: Bench, sha
     state = flying.vehicle.autopilot.state
     learnt, weight = state.land.hover_thrust, state.airframe.mass * state.airframe.g
     assert learnt is not None
-    flying.send(stop_plan(flying, flying.now, hover_thrust=share * learnt))
+    flying.send(stop_plan(flying, flying.now, hover_force=(0.0, 0.0, -share * learnt)))
     flying.streaming.clear()
     flying.run(1.0)
     assert state.hold is not None

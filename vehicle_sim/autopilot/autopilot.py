@@ -230,7 +230,7 @@ class Autopilot:
         measured = state.navigation.estimate
         assert measured is not None
         if state.hold is not None:
-            attitude, thrust = state.hold.command(measured, now, state.is_supported(now))
+            attitude, thrust = state.hold.command(measured, now, state.is_supported(now), state.navigation.is_reckoned)
             state.actuation.command(attitude, NO_RATES, thrust, now)
         else:
             level = attitude_of_force(0.0, 0.0, -1.0, euler_of(measured.attitude)[2])

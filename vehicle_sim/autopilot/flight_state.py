@@ -146,9 +146,11 @@ class FlightState:
         if not self.land.in_air:
             self.land.lift(thrust)
         hover = self.land.hover_thrust or max(thrust, weight)
-        if sent is not None and math.isfinite(sent.hover_thrust):  # that of the whole team
-            hover = min(max(sent.hover_thrust, weight), self.airframe.rotors.thrust_max)
-        self.hold = HoldController(plan, hover, self.supported_thrust, self.airframe.g, settings)
+        lean = 0.0, 0.0
+        if sent is not None and sent.hover_force is not None:  # those of the whole team
+            north, east, down = sent.hover_force
+            hover, lean = min(max(-down, weight), self.airframe.rotors.thrust_max), (-north / down, -east / down)
+        self.hold = HoldController(plan, hover, lean, self.supported_thrust, self.airframe.g, settings)
 
     def begin_descent(self, now: float) -> None:
         """Descend from where it is, or when the other vehicles do, where that is known."""

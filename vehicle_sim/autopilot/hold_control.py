@@ -115,25 +115,35 @@ class HoldController:
     """
 
     def __init__(
-        self, plan: HoldPlan, hover_thrust: float, thrust_min: float, g: float, settings: HoldSettings
-    ) -> None:
-        """``hover_thrust`` and the least thrust while in the air in N, ``g`` in m/s2."""
+        self, plan: HoldPlan, hover_thrust: float, lean: tuple[float, float], thrust_min: float, g: float,
+        settings: HoldSettings,
+    ) -> None:  # fmt: skip
+        """``hover_thrust`` and the least thrust while in the air in N, ``g`` in m/s2.
+
+        ``lean``: level part of the thrust that holds against the wind, of the vertical one, north and east.
+        """
         self.plan = plan
         self.hover_thrust = hover_thrust
         self._thrust_min = thrust_min
         self._up_min = min(thrust_min / hover_thrust, 1.0) * g
         self._g = g
         self._settings = settings
-        self._integral_x = 0.0
-        self._integral_y = 0.0
+        self._integral_x, self._integral_y = lean[0] * g, lean[1] * g
+        self._drift = [0.0] * 4
+        """Low-passed errors of position (m) and velocity (m/s), north and east, by dead reckoning."""
         self._last_time = plan.start
         self._thrust = hover_thrust
         """Last one commanded (N)."""
         self._supported: tuple[float, Vector, float] | None = None
         """Since when the payload stands (s), where the vehicle was then (m), and its thrust (N)."""
 
-    def command(self, measured: Measurement, now: float, supported: bool = False) -> tuple[Quaternion, float]:
+    def command(
+        self, measured: Measurement, now: float, supported: bool = False, reckoned: bool = False
+    ) -> tuple[Quaternion, float]:
         """Attitude set-point (unit quaternion body to world) and thrust (N).
+
+        ``reckoned``: position and velocity go on by dead reckoning. They drift, and otherwise on each vehicle: what
+        lasts of their errors is not followed, and links hang as they are pulled.
 
         ``supported``: the payload stands on the ground. The vehicle then hands it over, where it is. The integral that
         held the payload against the wind goes with the payload's weight: the link, which leans by both, stays as it is.
@@ -153,6 +163,12 @@ class HoldController:
         error_x, error_y = position[0] - x, position[1] - y
         step = min(max(now - self._last_time, 0.0), gains.step_max)
         self._last_time = now
+        off_x, off_y = velocity[0] - v_x, velocity[1] - v_y
+        if reckoned:
+            share = step / (gains.reckoning_washout + step)
+            errors = error_x, error_y, off_x, off_y
+            self._drift = [drift + share * (error - drift) for error, drift in zip(errors, self._drift, strict=True)]
+            error_x, error_y, off_x, off_y = (e - drift for e, drift in zip(errors, self._drift, strict=True))
         i_x = self._integral_x + gains.horizontal_ki * error_x * step
         i_y = self._integral_y + gains.horizontal_ki * error_y * step
         size = math.hypot(i_x, i_y)
@@ -170,8 +186,8 @@ class HoldController:
         pulls = (carried * up / g - self._thrust_min) / max(self.hover_thrust - self._thrust_min, 1e-3)
         i_x, i_y = min(max(pulls, 0.0), 1.0) * i_x, min(max(pulls, 0.0), 1.0) * i_y
 
-        a_x = acceleration[0] + gains.horizontal_kp * error_x + gains.horizontal_kd * (velocity[0] - v_x) + i_x
-        a_y = acceleration[1] + gains.horizontal_kp * error_y + gains.horizontal_kd * (velocity[1] - v_y) + i_y
+        a_x = acceleration[0] + gains.horizontal_kp * error_x + gains.horizontal_kd * off_x + i_x
+        a_y = acceleration[1] + gains.horizontal_kp * error_y + gains.horizontal_kd * off_y + i_y
         size = math.hypot(a_x, a_y)
         if size > gains.horizontal_max * g:
             a_x, a_y = a_x * gains.horizontal_max * g / size, a_y * gains.horizontal_max * g / size

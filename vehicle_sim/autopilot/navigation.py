@@ -43,6 +43,7 @@ class Navigation:
         self._has_rates = True
         self._still = 0.0
         """For how long it has stood, while its velocity was not measured (s)."""
+        self._reckons = False
 
     @property
     def estimate(self) -> Measurement | None:
@@ -53,6 +54,11 @@ class Navigation:
         if fresh_at != self._fresh[0]:
             self._fresh = fresh_at, Measurement.of_row(self._stamps.item(SAMPLE_TIME), self._row.tolist())
         return self._fresh[1]
+
+    @property
+    def is_reckoned(self) -> bool:
+        """Return True while position and velocity go on by dead reckoning."""
+        return self._reckons and not self._is_fresh
 
     @property
     def has_estimate(self) -> bool:
@@ -104,6 +110,7 @@ class Navigation:
         )
         if has_position:
             self._still = 0.0
+        self._reckons = not has_position and self.specific_force is not None
         self._raw, raw = sample, self._raw
         if has_rates and has_attitude and has_position and sample.is_usable():
             self._known, self._observed = sample, None

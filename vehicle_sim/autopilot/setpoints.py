@@ -90,13 +90,13 @@ class StopPlan(NamedTuple):
     duration: float
     control_points: tuple[Vector, ...]
     yaw: float
-    hover_thrust: float = math.nan
-    """Along the vertical (N); NaN: what the vehicle has learnt."""
+    hover_force: Vector | None = None
+    """Thrust that holds the vehicle at rest (N, NED); None: not known."""
 
 
 def checked_stop_plan(content: StopPlanContent, limits: SetpointSettings) -> StopPlan:
     """Return the plan that a message holds. Raises :class:`SetpointError`."""
-    _, _, start, descent, duration, yaw, points, hover_thrust = content
+    _, _, start, descent, duration, yaw, points, (north, east, down) = content
     if not math.isfinite(sum(map(sum, points))):
         raise SetpointError("a control point is not finite")
     if not 0.0 < duration <= limits.stop_duration_max:
@@ -105,4 +105,5 @@ def checked_stop_plan(content: StopPlanContent, limits: SetpointSettings) -> Sto
         raise SetpointError(f"the descent begins {descent - start} s after the stop, limit {HOLD_MAX} s")
     if not math.isfinite(yaw):
         raise SetpointError("yaw is not finite")
-    return StopPlan(start, descent, duration, tuple((x, y, z) for x, y, z in points), yaw, hover_thrust)
+    force = (north, east, down) if down < 0.0 and math.isfinite(north + east + down) else None
+    return StopPlan(start, descent, duration, tuple((x, y, z) for x, y, z in points), yaw, force)
