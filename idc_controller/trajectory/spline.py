@@ -110,6 +110,11 @@ class SplineTrajectory(Trajectory):
         points = _slowed_to_rest(self.control_points, last, self.interval, self.limits)
         return SplineTrajectory(points, self.interval, self.origin, self.limits)
 
+    def scaled(self, begin: float, rate: float, time: float) -> SplineTrajectory:
+        """See ``Trajectory.scaled``."""
+        origin = time - (begin - self.origin) / rate
+        return SplineTrajectory(self.control_points, self.interval / rate, origin, self.limits)
+
 
 def _slowed_to_rest(points: Array, last: int, interval: float, limits: Limits) -> Array:
     """Control points that agree up to index ``last``, then run on along the same curve ever more slowly.
