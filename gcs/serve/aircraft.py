@@ -131,7 +131,7 @@ class TeamAircraft:
             if (answer := self.set_current_item(first, now)) != ACCEPTED:
                 return answer
         else:
-            self.session.first = ""
+            self.session.choose("")
         if self.session.mission is None:
             return _NO_MISSION
         if not self.session.is_armed and (answer := self.arm(now)) != ACCEPTED:
@@ -203,7 +203,7 @@ class TeamAircraft:
             return self._refused("Mission")
         if not (session.in_air or session.may_begin):
             return rejected_for_now(f"Mission denied: {self._begun if session.is_armed else 'not armed'}")
-        if (problem := session.why_unflyable(session.first, in_air=session.in_air)) is not None:
+        if (problem := session.why_unflyable()) is not None:
             return denied(f"Mission denied: {problem}")
         if self._finished or not session.in_air:
             self._reached, self._finished = [], False
@@ -285,7 +285,7 @@ class TeamAircraft:
         labels = [label(item, number) for number, item in enumerate(items)]
         self._take(mission_of(self._plans, self.base) if items else None, labels)
         self._on_reached = on_reached
-        session.first = labels[current] if current else ""
+        session.choose(labels[current] if current else "")
         return ACCEPTED
 
     def load(self, mission: Mission) -> Answer:
@@ -302,7 +302,8 @@ class TeamAircraft:
 
     def _take(self, mission: Mission | None, labels: list[str]) -> None:
         self.session.mission, self._labels = mission, labels
-        self.session.first, self._reached, self._finished = "", [], False
+        self.session.choose("")
+        self._reached, self._finished = [], False
         self.session.changes += 1
 
     def take_fence(self, items: Sequence[MissionItem]) -> None:
@@ -327,16 +328,14 @@ class TeamAircraft:
         after = next((name for name in self._labels[index:] if name in flown), None)
         if after is None:
             return denied(f"Mission item denied: after {self._labels[index]} nothing is flown")
-        if session.is_at_stop:
+        is_begun = session.may_begin_elsewhere or (session.in_air and session.flies_mission)
+        if (session.is_at_stop and not is_begun) or (session.in_air and is_begun and not session.may_order):
             return self._refused("Mission item")
-        if session.in_air and session.flies_mission:
-            if not session.may_order:
-                return self._refused("Mission item")
-            if (problem := session.why_unflyable(after, in_air=True)) is not None:
-                return denied(f"Mission item denied: {problem}")
-            session.first = after
-            session.fly_mission(anew=True)
-        session.first = after
+        if is_begun and (problem := session.why_not_at(after)) is not None:
+            return denied(f"Mission item denied: {problem}")
+        session.choose(after)
+        if is_begun:
+            session.fly_item()
         return ACCEPTED
 
     @property

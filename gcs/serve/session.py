@@ -6,18 +6,20 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import chain
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from gcs.flight.alarms import Alarm
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.flight import Flight
 from gcs.flight.ground_station import GroundStation
+from gcs.flight.mission_legs import MissionLeg
 from gcs.flight.phase import CONTROLLED, IN_AIR, STANDING, Phase
 from gcs.flight.reconfiguration import reconfigure
 from gcs.mavlink import px4
 from gcs.mission.model import Lissajous, Mission
 from gcs.mission.route import FlyTo, HoldForever, Land, Leg, Position, Route
-from gcs.mission.steps import Climb, Place, Speed, Stay
+from gcs.mission.steps import Climb, Place, Stay
+from gcs.serve.flight_speed import FlightSpeed, LegSpeeds
 
 if TYPE_CHECKING:
     from gcs.config import SystemConfig
@@ -28,10 +30,6 @@ _RUN_DOWN = 2.0
 """s after disarming, for rotors and load to come to rest before the records of the flight are closed."""
 WAITING_ALTITUDE = 3.0
 """m; of the take-off that a flight has until one is ordered. It is not flown."""
-_AT_REST = 0.1
-"""m/s; below which the payload is at rest."""
-_THERE = 0.1
-"""m; within which it is where it was ordered: it overshoots where it is paused."""
 
 
 class OpenFlight(Protocol):
@@ -43,6 +41,13 @@ class OpenFlight(Protocol):
 
     def close(self) -> str:
         """Close the records; return what is to be said of them, empty: there are none."""
+
+
+class _LeftMission(NamedTuple):
+    """What remains of a mission that was left: its legs, and their speeds."""
+
+    legs: Iterator[MissionLeg]
+    speeds: LegSpeeds
 
 
 class TeamSession:
@@ -66,8 +71,9 @@ class TeamSession:
         """The mission that was uploaded; None: there is none."""
         self.first = ""
         """Source of the item at which the mission is begun, or goes on; empty: its beginning."""
-        self.speed: float | None = None
-        """Speed that was ordered in place of the mission's (m/s); None: none."""
+        self._left: _LeftMission | None = None
+        """What remains of the mission that was left, to go on with; None: it is begun at :attr:`first`."""
+        self._speed = FlightSpeed()
         self.pad = 0.0, 0.0
         """Where the payload stood when it was armed last, north and east."""
         self.changes = 0
@@ -76,7 +82,6 @@ class TeamSession:
         """What is to be said to operators, not sent yet."""
         self._alarms = 0
         self._cleared_until = math.inf
-        self._planned_speed = 0.0
         self._flies_mission = False
         self._phase = Phase.CONNECT
         self._now = 0.0
@@ -111,12 +116,8 @@ class TeamSession:
 
     @property
     def may_order(self) -> bool:
-        """True while the payload can be ordered elsewhere: in the air, before its landing, without a failsafe.
-
-        Also where it was paused so late that it rests in its landing.
-        """
-        flight = self.flight
-        return flight.phase in IN_AIR and not flight.reason and (flight.phase is not Phase.LAND or self.is_paused)
+        """True while the payload can be ordered elsewhere: in the air, before its landing, without a failsafe."""
+        return self.flight.phase in IN_AIR - {Phase.LAND} and not self.flight.reason
 
     @property
     def may_begin(self) -> bool:
@@ -131,9 +132,16 @@ class TeamSession:
         return goes_on and flight.phase in STANDING and (not flight.legs.ended or flight.phase is Phase.ON_GROUND)
 
     @property
+    def may_begin_elsewhere(self) -> bool:
+        """True while a mission was begun of which nothing has been done yet: it may begin at another item."""
+        flight = self.flight
+        waits = flight.phase in (Phase.CONNECT, Phase.CHECK, Phase.ARM) and not flight.reason
+        return self._flies_mission and waits and self.is_armed and not flight.landings and flight.ground_legs is None
+
+    @property
     def is_paused(self) -> bool:
-        """True while the mission is paused on its way."""
-        return self.flight.system.guidance.speed_limit == 0.0
+        """True while what was flown is paused on its way."""
+        return self.flight.is_held
 
     @property
     def is_settled(self) -> bool:
@@ -141,13 +149,7 @@ class TeamSession:
         flight = self.flight
         if flight.phase not in IN_AIR:
             return not self.is_armed
-        if self.is_paused:
-            record = flight.last_record
-            if record is None:
-                return False
-            place, velocity = record.estimate.x[:3].tolist(), record.estimate.x[3:6].tolist()
-            return math.hypot(*velocity) < _AT_REST and math.dist(place, self.position) < _THERE
-        return flight.phase is Phase.HOLD and flight.next_source is None
+        return flight.is_at_rest and (self.is_paused or flight.next_source is None)
 
     @property
     def flies_mission(self) -> bool:
@@ -184,13 +186,18 @@ class TeamSession:
             return flight.phase is Phase.HOLD and flight.next_source is None
         return flight.legs.ended and flight.landings > 0 and not flight.reason
 
-    def why_unflyable(self, first: str, *, in_air: bool) -> str | None:
+    def why_unflyable(self) -> str | None:
+        """Return why the mission cannot be begun as it was chosen, or gone on with, from here; None: it can."""
+        goes_on = self.in_air and (self._left is not None or (self._flies_mission and self.is_paused))
+        return None if goes_on else self.why_not_at(self.first)
+
+    def why_not_at(self, first: str) -> str | None:
         """Return why the mission cannot be begun at an item, or its beginning (empty), from here; None: it can."""
         assert self.mission is not None
         if not isinstance(route := self.mission.reference, Route):
-            return "a curve begins on the ground" if in_air else None
+            return "a curve begins on the ground" if self.in_air else None
         route = route.beginning_at(first) if first else route
-        return route.problem(self._above_ground if in_air else None)
+        return route.problem(self._above_ground if self.in_air else None)
 
     # Orders
 
@@ -208,45 +215,65 @@ class TeamSession:
         """Take off to ``altitude`` (m above home), and hold there."""
         here = Place(self.pad, altitude)
         steps = (Climb("take-off", here), Stay("take-off", here))
-        self._begin(self.world, Route(steps, self._cruise_speed(), self.world.system.resting_altitude))
+        self._begin(self.world, Route(steps, self._cruise_speed, self.world.system.resting_altitude))
         self._set_mode(px4.MODE_TAKEOFF)
 
-    def fly_mission(self, *, anew: bool = False) -> None:
-        """Fly the mission from the item that was chosen on: take off for it, go on with it, or begin it in the air.
+    def choose(self, first: str) -> None:
+        """Begin the mission at an item, or at its beginning (empty), when it is flown next."""
+        self.first, self._left = first, None
 
-        ``anew``: leave the item that is flown to.
+    def fly_mission(self) -> None:
+        """Fly the mission: take off for it, go on with it where it was left, or begin it at the item that was chosen.
+
+        In the air it is begun from where the payload is.
         """
         assert self.mission is not None
-        route = self.mission.reference
-        if isinstance(route, Lissajous):
-            self._begin(self.mission, route)
-            self._flies_mission = True
-            self._set_mode(px4.MODE_MISSION)
-            return
-        resumed = self._flies_mission and self.in_air and self.is_paused and not anew
-        if resumed and self._wanted_speed > self._planned_speed:
-            resumed, self.first = False, self.flight.next_source or self.first
-        if self.first:
-            route = route.beginning_at(self.first)
-        if self.speed is not None:
-            route = replace(route, speed=self.speed)
+        paused, left = self._flies_mission and self.is_paused, self._left
+        self._flies_mission, self._left = True, None
+        wanted = self._speed.of_mission(self.mission)
         if not self.in_air:
-            self._begin(self.mission, route)
-        elif resumed:
-            self._limit_speed()
+            self._begin(self.mission, self._route())
+        elif paused and wanted <= self._speed.legs.planned:
+            self.flight.resume(self._speed.plan(self._speed.legs, wanted))
+        elif left is not None and wanted <= left.speeds.planned:
+            self._fly(left.legs, left.speeds, wanted)
         else:
-            self._fly(route.legs(self._above_ground), route.speed)
-        self._flies_mission = True
+            self._begin_in_air(self.flight.next_source if paused else None)
+        self._limit_speed()
         self._set_mode(px4.MODE_MISSION)
+
+    def fly_item(self) -> None:
+        """Leave the item of the mission that is flown to, or begun at, for the one that was chosen."""
+        if self.in_air:
+            self._begin_in_air(None)
+            self._set_mode(px4.MODE_MISSION)
+        else:
+            self.fly_mission()
+
+    def _begin_in_air(self, first: str | None) -> None:
+        """Begin the mission from where it is at an item; None: at the one that was chosen."""
+        self.first = first or self.first
+        route = self._route()
+        assert isinstance(route, Route)
+        self._fly(route.legs(self._above_ground), LegSpeeds.of(route), route.speed)
+
+    def _route(self) -> Route | Lissajous:
+        """Return the mission's route from the chosen item on, with the speed that was ordered."""
+        assert self.mission is not None
+        route = self.mission.reference
+        if isinstance(route, Route):
+            route = route.beginning_at(self.first) if self.first else route
+            route = replace(route, speed=self._speed.of_mission(self.mission))
+        return route
 
     def hold(self) -> None:
         """Come to rest on the way, and hold."""
-        self.flight.system.guidance.speed_limit = 0.0
+        self.flight.hold()
         self._set_mode(px4.MODE_HOLD)
 
     def go_to(self, place: Position, speed: float | None) -> None:
         """Fly to a place, and hold there."""
-        legs: list[Leg] = [FlyTo(place, speed or self._cruise_speed(), "go to"), HoldForever(place, "go to")]
+        legs: list[Leg] = [FlyTo(place, speed or self._cruise_speed, "go to"), HoldForever(place, "go to")]
         self._leave_mission(legs)
         self._set_mode(px4.MODE_HOLD)
 
@@ -254,13 +281,13 @@ class TeamSession:
         """Land ``over`` a place (north, east), after a flight at the present altitude; None: where it is."""
         legs: list[Leg] = []
         if over is not None:
-            legs.append(FlyTo((*over, self._above_ground[2]), self._cruise_speed(), "return"))
+            legs.append(FlyTo((*over, self._above_ground[2]), self._cruise_speed, "return"))
         self._leave_mission([*legs, Land((0.0, 0.0, 0.0), "land")])
         self._set_mode(px4.MODE_LAND if over is None else px4.MODE_RETURN)
 
     def change_speed(self, speed: float) -> None:
         """Fly with another ``speed`` (m/s) from now on; faster than planned, from the next rest on."""
-        self.speed = speed
+        self._speed.ordered = speed
         self._have_speed()
 
     def configure(self, system: SystemConfig) -> None:
@@ -273,7 +300,7 @@ class TeamSession:
                 route = replace(route, speed=cruise)
             self.mission = replace(self.mission, system=system, reference=route)
         reconfigure(self.flight, system)
-        if self.speed is None and cruise != before:
+        if self._speed.ordered is None and cruise != before:
             self._have_speed()
 
     def forget_mission(self) -> None:
@@ -295,14 +322,18 @@ class TeamSession:
             self.station.raise_failsafe(now, failsafe, reason)
 
     def _begin(self, mission: Mission, route: Route | Lissajous) -> None:
-        self._planned_speed = route.speed if isinstance(route, Route) else math.inf
+        self._speed.plan(LegSpeeds.of(route), self._speed.of_mission(mission))
         self.flight.begin(replace(mission, reference=route))
 
     def _leave_mission(self, legs: list[Leg]) -> None:
         if self._flies_mission:
             self.first = self.flight.next_source or ""
+            if self.first:
+                self.flight.hold()
+                self._left = _LeftMission(self.flight.remaining(), self._speed.legs)
             self._flies_mission = False
-        self._fly(iter(legs), max([self._cruise_speed(), *(leg.speed for leg in legs if isinstance(leg, FlyTo))]))
+        speed = max([self._cruise_speed, *(leg.speed for leg in legs if isinstance(leg, FlyTo))])
+        self._fly(iter(legs), LegSpeeds(speed, speed), speed)
 
     @property
     def _above_ground(self) -> Position:
@@ -310,53 +341,40 @@ class TeamSession:
         north, east, down = self.position
         return north, east, min(down, -self.lowest)
 
-    def _fly(self, legs: Iterator[Leg], speed: float) -> None:
-        """Fly ``legs``, none faster than ``speed`` (m/s); from too low for a level flight first straight up."""
+    def _fly(self, legs: Iterator[MissionLeg], speeds: LegSpeeds, wanted: float) -> None:
+        """Fly ``legs`` with the speed ``wanted`` (m/s); from too low for a level flight first straight up."""
         first, up = next(legs), list[Leg]()
         if self._above_ground != self.position and not isinstance(first, Land):
             up.append(FlyTo(self._above_ground, self.world.system.motion.climb_speed, first.source))
-        self._planned_speed = speed
-        self.flight.fly(chain(up, (first,), legs), speed)
+        self.flight.fly(chain(up, (first,), legs), self._speed.plan(speeds, wanted))
         self.changes += 1
 
     def _have_speed(self) -> None:
         """Fly with the wanted speed: a slower one at once, a faster one, or beside the mission's own, on new legs."""
         if not self.may_order or self.is_paused:
             return
-        if self._flies_mission and self.flight.next_source and self._needs_new_legs:
-            self.first = self.flight.next_source
-            self.fly_mission(anew=True)
+        next_source = self.flight.next_source
+        if self._flies_mission and next_source and self.mission and self._speed.needs_new_legs(self.mission):
+            self._begin_in_air(next_source)
         else:
             self._limit_speed()
 
-    @property
-    def _needs_new_legs(self) -> bool:
-        assert self.mission is not None
-        if not isinstance(self.mission.reference, Route):
-            return False
-        has_own = any(isinstance(step, Speed) for step in self.mission.reference.steps)
-        return self._wanted_speed > self._planned_speed or (self.speed is None and has_own)
-
-    @property
-    def _wanted_speed(self) -> float:
-        """The speed that was ordered, else the mission's, else that of what is flown without one (m/s)."""
-        if self.speed is None and self._flies_mission and self.mission is not None:
-            return self.mission.reference.speed if isinstance(self.mission.reference, Route) else math.inf
-        return self._cruise_speed()
-
     def _limit_speed(self) -> None:
-        wanted = self._wanted_speed
-        self.flight.system.guidance.speed_limit = wanted if wanted < self._planned_speed else math.inf
+        of_mission = self._speed.of_mission(self.mission) if self._flies_mission and self.mission else None
+        wanted = self._cruise_speed if of_mission is None else of_mission
+        self.flight.system.guidance.speed_limit = self._speed.limit(wanted)
 
+    @property
     def _cruise_speed(self) -> float:
-        return self.world.system.motion.speed if self.speed is None else self.speed
+        return self._speed.cruise(self.world)
 
     def _set_mode(self, mode: int) -> None:
         self.mode = mode
         self.changes += 1
 
     def _reset(self) -> None:
-        self.first, self.speed, self._alarms = "", None, 0
+        self.choose("")
+        self._speed, self._alarms = FlightSpeed(), 0
         self._flies_mission = False
 
     def _open(self, *, recorded: bool) -> None:

@@ -31,7 +31,7 @@ class Watched(Flight):
         self.commands = []
         team = SimpleNamespace(links=(), command_all=lambda *command: self.commands.append(command))
         control = SimpleNamespace(
-            estimator=None, controller=SimpleNamespace(parameters=PARAMETERS, guidance=Guidance())
+            estimator=None, resting_place=None, controller=SimpleNamespace(parameters=PARAMETERS, guidance=Guidance())
         )
         super().__init__(MISSION, team, control, AlarmLog(), stack.obstacle_map(MISSION))
         self.phase = phase

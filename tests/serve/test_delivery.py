@@ -11,6 +11,7 @@ import pytest
 from mission_ground import placeless
 from team_bench import TeamBench, Truth, reposition, set_mode, team_command
 from team_session import ARM, DISARM, LAND, RETURN, START, at, change_speed, take_off
+from vehicle_bench import GROUND
 
 from gcs.flight.phase import Phase
 from gcs.mavlink import px4
@@ -103,6 +104,13 @@ def test_payload_is_set_down_at_the_stop_unloaded_and_flown_home(flown: Delivery
 def test_items_are_reached_and_current_in_order_also_on_the_ground(flown: Delivery) -> None:
     assert changes(flown.team, "MISSION_ITEM_REACHED", lambda found: found.seq) == [*range(len(DELIVERY))]
     assert changes(flown.team, "MISSION_CURRENT", lambda found: found.seq) == [*range(len(DELIVERY))]
+
+
+def test_landing_is_reached_at_touchdown(flown: Delivery) -> None:
+    inbox = flown.team.inbox[GROUND]
+    reached = [found.get_type() == "MISSION_ITEM_REACHED" and found.seq == 1 for found in inbox].index(True)
+    height = [-found.z for found in inbox[:reached] if found.get_type() == "LOCAL_POSITION_NED"][-1]
+    assert height < 0.35, "the height above the place is 1 m"
 
 
 def test_team_is_disarmed_and_on_the_ground_at_the_stop(flown: Delivery) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as m
 import pytest
 from mission_ground import placeless
@@ -83,6 +84,34 @@ def test_item_that_cannot_be_the_first_is_refused_with_the_reason(team: TeamBenc
     result, text = team.answer(ARM)
     assert result == DENIED
     assert text.startswith("Mission denied: item 3 (NAV_RETURN_TO_LAUNCH): altitude: the payload is still on the pad")
+
+
+@pytest.mark.parametrize("phase", [Phase.CONNECT, Phase.ARM])
+def test_item_that_is_chosen_before_the_take_off_is_the_first(team: TeamBench, phase: Phase) -> None:
+    upload(team, UP, at(1.0, 0.0, 1.5), at(1.0, 1.0, 2.0), HOME)
+    team.order(START)
+    until_phase(team, phase)
+    team.order(choose(2))
+    flight = team.server.session.flight
+    assert flight.next_source == "item 3 (NAV_WAYPOINT)" and team.server.aircraft.current_item == 2
+    assert team.answer(choose(3))[1].startswith("Mission item denied: item 4 (NAV_RETURN_TO_LAUNCH): altitude: ")
+    until_phase(team, Phase.SPOOL_UP)
+    assert flight.next_source == "item 3 (NAV_WAYPOINT)"
+
+
+@pytest.mark.slow
+def test_item_behind_the_fence_is_flown_to_round_it(team: TeamBench) -> None:
+    corners = [(4.5, -3.0), (5.5, -3.0), (5.5, 3.0), (4.5, 3.0)]
+    number, frame = m.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION, m.MAV_FRAME_GLOBAL
+    fence = [at(*corner, 0.0, number, frame=frame, param1=4, param4=0.0) for corner in corners]
+    assert team.upload(fence, PlanType.FENCE) == (m.MAV_MISSION_ACCEPTED, "")
+    upload(team, UP, at(0.0, 7.0, 2.0), at(10.0, 7.0, 2.0), at(10.0, 0.0, 2.0))
+    team.order(START)
+    until_phase(team, Phase.FLY)
+    team.order(choose(3))
+    team.settled(10.0, 0.0, 2.0)
+    path = Truth(team.folder).position[:, :2]
+    assert not np.any((np.abs(path[:, 0] - 5.0) < 0.5) & (np.abs(path[:, 1]) < 3.0))
 
 
 @pytest.mark.slow
