@@ -128,7 +128,7 @@ def test_order_at_the_stop_is_refused_with_the_reason(flown: Delivery, name: str
     assert flown.answers[name][0] == result and flown.answers[name][1].startswith(reason)
 
 
-def test_mission_is_not_replaced_at_the_stop_and_may_be_told_to_go_on(flown: Delivery) -> None:
+def test_mission_is_not_replaced_at_the_stop_and_may_be_resumed(flown: Delivery) -> None:
     refusal = "Mission refused: the one before is being flown; hold first"
     assert flown.upload_at_stop == (m.MAV_MISSION_ERROR, refusal)
     assert flown.continued == (m.MAV_RESULT_ACCEPTED, "")

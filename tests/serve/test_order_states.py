@@ -161,7 +161,7 @@ def test_return_ordered_in_the_climb_rises_before_it_flies(team: TeamBench) -> N
     began = team.now
     team.order(reposition(3.0, 0.0, 1.5))
     team.settled(3.0, 0.0, 1.5)
-    truth, lowest = Truth(team.folder, began), team.server.session.lowest
+    truth, lowest = Truth(team.folder, began), team.server.session.orders.lowest
     away = truth.position[:, 0] > 0.3
     assert away.any() and -truth.position[away, 2].max() > lowest - 0.1
     assert truth.contacts.max() == 0
