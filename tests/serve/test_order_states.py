@@ -114,6 +114,49 @@ def test_item_behind_the_fence_is_flown_to_round_it(team: TeamBench) -> None:
     assert not np.any((np.abs(path[:, 0] - 5.0) < 0.5) & (np.abs(path[:, 1]) < 3.0))
 
 
+POLE = """
+[mission]
+name = "pole"
+seed = 1
+[reference]
+kind = "waypoints"
+speed = 1.5
+points = [[14.0, 0.0, -4.0]]
+[[obstacle]]
+name = "pole"
+shape = "pole"
+position = [8.0, 0.4]
+radius = 0.3
+height = 10.0
+"""
+
+
+@pytest.mark.slow
+def test_pause_before_an_obstacle_holds_clear_of_it_and_goes_on_round_it(tmp_path: Path) -> None:
+    (tmp_path / "pole.toml").write_text(POLE)
+    (tmp_path / "run").mkdir()
+    world = read_mission(tmp_path / "pole.toml", None, {"team.vehicles": 3})
+    with TeamBench(world, tmp_path / "run") as team:
+        team.ready()
+        upload(team, UP._replace(z=4.0), at(14.0, 0.0, 4.0), HOME)
+        team.order(START)
+        team.until("LOCAL_POSITION_NED", lambda found: found.x > 5.0)
+        began = team.now
+        team.order(set_mode(px4.MODE_HOLD))
+        team.at_rest()
+        paused = Truth(tmp_path / "run", began)
+        heading = paused.velocity[0] / paused.speed[0]
+        along = (paused.position - paused.position[-1]) @ heading
+        assert along[0] < -1.0 and along.max() < 0.1, "it does not fly past the place where it holds"
+        assert np.hypot(*(paused.position[-1, :2] - (8.0, 0.4))) > 1.5
+        team.order(set_mode(px4.MODE_MISSION))
+        team.until("MISSION_ITEM_REACHED", lambda found: found.seq == 1)
+        team.order(set_mode(px4.MODE_LAND))
+        team.disarmed()
+        [result] = team.results
+        assert result.summary["outcome"] == "completed" and result.summary["clearance_min_m"] > 0.5
+
+
 @pytest.mark.slow
 def test_unloading_that_is_chosen_in_the_air_is_refused(team: TeamBench) -> None:
     upload(team, UP, at(1.0, 0.0, 1.5), LANDING, GRIPPER, UP, at(0.0, 0.0, 1.5))
