@@ -177,5 +177,5 @@ def plan(
     """
     trajectory = safety.filter(estimate.time, guidance.reference(estimate.time, mission), estimate)
     report = safety.report
-    guidance.observe(trajectory, report.lag, report.deviation, air, report.standing_slack, report.nearest)
+    guidance.observe(trajectory, report.lag, report.deviation, air, report.standing_slack)
     return trajectory

@@ -42,7 +42,6 @@ class Guidance:
         deviation: Array | None,
         air: Air | None,
         missed: float = 0.0,
-        near: str = "",
     ) -> None:
         """Take note of what the safety filter made of the last reference.
 
@@ -52,7 +51,6 @@ class Guidance:
             deviation: states of its deviation from the reference at the stages (K + 1, 5, 3), SI; None: none.
             air: estimated motion and drag of the air; None: not estimated.
             missed: clearance by which it misses the margin from what stands (m).
-            near: name of an obstacle that may have deflected it; empty: there is none.
         """
 
     def progress(self, time: float) -> float:
@@ -100,7 +98,7 @@ class AdaptiveGuidance(Guidance):
         """Whether the speed limit that is commanded lowered the rate that is wanted last."""
         self._tracked: PayloadTrajectory | None = None
         self._deflected = False
-        """Whether what is tracked may be deflected by an obstacle."""
+        """Whether what is tracked deviates from the reference: by an obstacle, or a progress rate that has changed."""
         self._restart: tuple[float, float] | None = None
         """Time at which another mission was given and its progress then (s); until the next step."""
 
@@ -133,13 +131,12 @@ class AdaptiveGuidance(Guidance):
         deviation: Array | None,
         air: Air | None,
         missed: float = 0.0,
-        near: str = "",
     ) -> None:
         """See :meth:`Guidance.observe`."""
         self._tracked, self.air = tracked, air
         if self._current is None or self._observed is self._current:
             return
-        self._observed, self._deflected = self._current, bool(near) and deviation is not None
+        self._observed, self._deflected = self._current, deviation is not None
         rate_in_wind = None if air is None else self._rate_in_wind(self._current, deviation, air)
         current = self._current
         if self._by_sight is not None:

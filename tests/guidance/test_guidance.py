@@ -75,7 +75,7 @@ def test_mission_is_stopped_on_unless_the_payload_is_deflected(guidance):
 def test_deflected_payload_is_stopped_ahead_of_where_it_is(guidance):
     mission, tracked = straight(40.0, SPEED), straight(40.0, SPEED, altitude=7.0)
     guidance.reference(5.0, mission)
-    guidance.observe(tracked, 0.0, np.zeros((len(guidance._stages), 5, 3)), None, near="pole")
+    guidance.observe(tracked, 0.0, np.zeros((len(guidance._stages), 5, 3)), None)
     rest, progress = guidance.stopping_trajectory(8.0, mission)
     position, velocity = tracked.derivatives(np.array([8.0]), 1)[:, 0]
     assert velocity[0] == pytest.approx(SPEED) and progress == rest.start == 8.0
@@ -87,7 +87,7 @@ def test_held_up_payload_is_stopped_ahead_of_where_it_is(guidance):
     mission = tracked = straight(40.0, SPEED)
     for k in range(40):
         guidance.reference(5.0 + STEP * k, mission)
-        guidance.observe(tracked, 10.0, np.zeros((len(guidance._stages), 5, 3)), None, near="wall")
+        guidance.observe(tracked, 10.0, np.zeros((len(guidance._stages), 5, 3)), None)
     assert guidance.rate < 1.0
     rest, _ = guidance.stopping_trajectory(7.0, mission)
     assert isinstance(rest, RestTrajectory)
