@@ -32,7 +32,7 @@ from gcs.serve.server import TEAM_SYSTEM, TeamServer
 
 @dataclass(frozen=True)
 class ServeOptions:
-    """What ``gcs serve`` is asked for, beside the options that it shares with ``gcs fly``."""
+    """Options of ``gcs serve`` beside those that it shares with ``gcs fly``."""
 
     fly: FlyOptions
     listen: Address
@@ -84,7 +84,7 @@ def serve(options: ServeOptions, world: Mission, vehicle_sim: ForkedProgram | No
             if server.session.is_armed:
                 logs[station].update()
 
-        interrupt.begin_flight()  # before anybody is told that it is ready, and may end it
+        interrupt.begin_flight()  # before clients know that it is ready, and may end it
         for name, address in (("team", (host, port)), *(("sends to", client) for client in options.clients)):
             print(f"{name}: udp://{address[0]}:{address[1]}")
         print(f"system {TEAM_SYSTEM}: ready; Ctrl-C lands the payload and ends", flush=True)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 import tempfile
 import threading
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager, ExitStack, closing, nullcontext
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack, closing
 from functools import partial
 from pathlib import Path
-from typing import Any, Protocol, Self
+from typing import Any, Self
 
 from gcs.app.call import as_flown
 from gcs.app.flown import Flight, flown
@@ -17,12 +17,9 @@ from gcs.app.fly import FlightResult
 from gcs.app.fly_options import FlyOptions
 from gcs.app.in_process import open_world
 from gcs.app.served_flight import Flights, take_truth
-from gcs.drivers.connection import Connection
+from gcs.app.team_drive import Drive, LockstepDrive, RealTimeDrive, YieldingConnection
 from gcs.drivers.in_process import InProcessLockstep
-from gcs.drivers.interrupt import Interrupt
-from gcs.drivers.realtime import run_in_real_time
-from gcs.errors import GcsError, OrderRefused
-from gcs.flight.failsafe import Failsafe
+from gcs.errors import OrderRefused
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address, parse_url
 from gcs.mavlink.services.aircraft import Reposition
@@ -41,110 +38,6 @@ _READY_TIME = 30.0
 """s; for the checks before take-off."""
 
 
-class _Drive(Protocol):
-    """Lets time go on."""
-
-    server: TeamServer
-
-    @property
-    def lock(self) -> AbstractContextManager[Any, bool | None]:
-        """To be held while the team is read or ordered: between two exchanges."""
-
-    @property
-    def now(self) -> float:
-        """The ground's time (s)."""
-
-    def run(self, until: Callable[[], bool], timeout: float) -> bool:
-        """Go on until a condition holds, or for ``timeout`` (s); return whether it does."""
-
-    def close(self) -> None:
-        """Land what is in the air, and end."""
-
-
-class _Lockstep:
-    """A simulated world in this process, whose time goes on while something waits for it."""
-
-    def __init__(self, lockstep: InProcessLockstep[TeamServer], sent: Callable[[float, Sequence[Any]], None]) -> None:
-        self._lockstep, self._sent = lockstep, sent
-        self.server, self.lock = lockstep.station, nullcontext()
-
-    @property
-    def now(self) -> float:
-        return self._lockstep.now
-
-    def run(self, until: Callable[[], bool], timeout: float) -> bool:
-        end = self.now + timeout
-        while not until():
-            if self.now >= end or self.server.ended:
-                return False
-            self._lockstep.step(lambda sent: self._sent(self.now, sent))
-        return True
-
-    def close(self) -> None:
-        self.server.raise_failsafe(self.now, Failsafe.INTERRUPTED, "closed")
-        self.run(lambda: self.server.ended, math.inf)
-        self._lockstep.let_land()
-
-
-class _YieldingConnection(Connection):
-    """A connection whose thread gives up a lock while it waits."""
-
-    def __init__(self, local: Address, lock: threading.Condition) -> None:
-        super().__init__(local)
-        self.lock = lock
-
-    def wait(self, timeout: float) -> bool:
-        self.lock.release()
-        try:
-            return super().wait(timeout)
-        finally:
-            self.lock.acquire()
-
-
-class _RealTime:
-    """A thread that runs the ground of a swarm which flies in real time.
-
-    It holds :attr:`lock` except while it waits for the next datagram or timer: who holds that sees the team between
-    two exchanges.
-    """
-
-    def __init__(self, server: TeamServer, connection: _YieldingConnection) -> None:
-        self.server, self.lock = server, connection.lock
-        self._connection, self._interrupt = connection, Interrupt(())
-        self._error: BaseException | None = None
-        self._thread = threading.Thread(target=self._fly, name="team", daemon=True)
-        self._thread.start()
-
-    @property
-    def now(self) -> float:
-        return self.server.now
-
-    def _fly(self) -> None:
-        settings = self.server.session.world.system.drivers
-        with self.lock:
-            try:
-                run_in_real_time(
-                    self.server, self._connection, self._interrupt, settings, progress=self.lock.notify_all
-                )
-            except BaseException as error:
-                self._error = error
-            self.lock.notify_all()
-
-    def run(self, until: Callable[[], bool], timeout: float) -> bool:
-        with self.lock:
-            end = self.now + timeout
-            while not (found := until()) and self.now < end and self._thread.is_alive() and self._error is None:
-                self.lock.wait(1.0)
-        if self._error is not None:
-            raise GcsError(f"the ground has ended: {self._error}") from self._error
-        return found
-
-    def close(self) -> None:
-        self._interrupt.requested = True
-        self._thread.join()
-        self.run(lambda: True, 0.0)
-
-
 class Team:
     """UAVs and their load, flown as one aircraft; a context manager that lands and closes.
 
@@ -155,7 +48,7 @@ class Team:
     An order that cannot be carried out raises :class:`OrderRefused` with the reason.
     """
 
-    def __init__(self, drive: _Drive, flights: Flights, setpoints: SentSetpoints, opened: ExitStack) -> None:
+    def __init__(self, drive: Drive, flights: Flights, setpoints: SentSetpoints, opened: ExitStack) -> None:
         self._drive, self._flights, self._setpoints, self._opened = drive, flights, setpoints, opened
         self._server = drive.server
         self._session, self._aircraft = drive.server.session, drive.server.aircraft
@@ -192,7 +85,7 @@ class Team:
 
             flights = Flights(simulated.addresses, folder.path, partial(take_truth, folder.path))
             server = TeamServer(mission, flights.open)
-            drive = _Lockstep(InProcessLockstep(simulated, server), sent.add)
+            drive = LockstepDrive(InProcessLockstep(simulated, server), sent.add)
             folder.keep()
             return cls(drive, flights, sent, opening.pop_all())
 
@@ -212,11 +105,11 @@ class Team:
         options = FlyOptions(Path(WORLD), connect=tuple(parse_url(url) for url in urls))
         with ExitStack() as opening:
             folder = opening.enter_context(NewRunFolder("team", run_dir))
-            connection = opening.enter_context(closing(_YieldingConnection(_local(options), threading.Condition())))
+            connection = opening.enter_context(closing(YieldingConnection(_local(options), threading.Condition())))
             flights = Flights(options.addresses(mission.system.team.vehicles), folder.path)
             server = TeamServer(mission, flights.open)
             folder.keep()
-            return cls(_RealTime(server, connection), flights, SentSetpoints(), opening.pop_all())
+            return cls(RealTimeDrive(server, connection), flights, SentSetpoints(), opening.pop_all())
 
     # State
 
@@ -311,7 +204,7 @@ class Team:
         def is_at_rest() -> bool:
             if self.time <= begin:
                 return False
-            return self._session.is_settled or self._session.flight is not flight
+            return self._session.orders.is_settled or self._session.flight is not flight
 
         return self._drive.run(is_at_rest, timeout)
 

@@ -73,6 +73,15 @@ class ControlLoop:
         """Stop of all vehicles when set-points are lost; it goes out with the set-points. None: not flying yet."""
         return self.stop_plans[0] if self.stop_plans else None
 
+    @property
+    def resting_place(self) -> Array | None:
+        """Where the payload (3,) comes to rest by the newest stop plan (m, NED); None: it is not flying yet."""
+        if not self.stop_plans:
+            return None
+        newest = self.stop_plans[-1]
+        place: Array = newest.payload_positions(self.controller.parameters, np.array([newest.duration]))[0]
+        return place
+
     def start_links(self, time: float, payload: Array, estimate: Estimate | None = None) -> None:
         """Begin to estimate links over a ``payload`` (12,) on the ground: upright ones, or those of an ``estimate``.
 

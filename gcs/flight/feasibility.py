@@ -20,8 +20,8 @@ from gcs.mission.model import Limits, Lissajous, Mission, Obstacle
 from gcs.mission.plausibility import implausible
 from gcs.mission.route import Circle, GroundLeg, HoldForever, Land, Leg, Position, Route, TakeOff
 from gcs.mission.route_clearance import (
+    CHECKED_LEGS,
     SPACING,
-    TRIED_LEGS,
     circle_places,
     curve_places,
     free_space,
@@ -172,7 +172,7 @@ class _Check:
         return self._found
 
     def _route(self, pad: _Place, route: Route) -> None:
-        here, legs = pad, route.first_lap(TRIED_LEGS)
+        here, legs = pad, route.first_lap(CHECKED_LEGS)
         for leg in legs:
             if isinstance(leg, HoldForever | GroundLeg):
                 continue

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from itertools import chain, groupby
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from gcs.flight.failsafe import Failsafe
 from gcs.flight.failsafe_state import FailsafeState
 from gcs.flight.ground_legs import GroundLegs
 from gcs.flight.landing_place import LandingPlace
-from gcs.flight.mission_legs import MissionLegs
+from gcs.flight.mission_legs import MissionLeg, MissionLegs
 from gcs.flight.mission_trajectory import MissionTrajectory
 from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import CONTROLLED, IN_AIR, STANDING, Phase
@@ -23,7 +24,6 @@ from gcs.flight.spool import SpoolUp, Touchdown
 from gcs.flight.team import Team
 from gcs.mission.cargo import CargoState
 from gcs.mission.model import Mission
-from gcs.mission.route import Leg
 from idc_controller.arrays import Array
 from idc_controller.estimation.grounded_links import LinkStates
 from idc_controller.estimation.measurements import Estimate, Measurement
@@ -76,8 +76,8 @@ class Flight:
         """What is, or was, done on the ground before the take-off of this flight; None: nothing."""
         self.mission_trajectory: MissionTrajectory | None = None
         """Of this flight, from the beginning of its climb until the rotors spool up for the next; else None."""
-        self._passed: list[str] = []
-        """:attr:`passed` before the trajectory that is flown."""
+        self._flown: list[str] = []
+        """Sources of the legs before the trajectory that is flown, in the order of the flight."""
         self._home: Array | None = None
         self._pad: Trajectory | None = None
         self._spool_up: SpoolUp | None = None
@@ -205,8 +205,9 @@ class Flight:
         assert self.mission_trajectory is not None
         self.landing_place.waiting_since = math.inf
         guidance = self.system.guidance
-        guidance.speed_limit = math.inf  # of what was flown, which may have been paused
-        followed, progress = guidance.stopping_trajectory(time, self.mission_trajectory.trajectory)
+        guidance.speed_limit = math.inf  # of what was flown
+        trajectory, rest = self.mission_trajectory.trajectory, self.control.resting_place
+        followed, progress = guidance.stopping_trajectory(time, trajectory, rest)
         change(followed, progress)
         guidance.restart(time, progress)
 
@@ -222,14 +223,47 @@ class Flight:
             elif self.phase is Phase.ARM:
                 self._disarm(self.time)
 
-    def fly(self, legs: Iterator[Leg], speed: float) -> None:
+    @property
+    def is_at_rest(self) -> bool:
+        """True while the payload is planned to hold, and is planned to be at rest already."""
+        if self.phase is not Phase.HOLD or self.last_record is None:
+            return False
+        speed = float(np.linalg.norm(self.last_record.decision.flat.payload[1, 0]))
+        return speed < self._settings.takeoff_landing.hold_speed
+
+    @property
+    def is_held(self) -> bool:
+        """True from :meth:`hold` until other legs are flown."""
+        return self.mission_trajectory is not None and self.mission_trajectory.is_held
+
+    def hold(self) -> None:
+        """Come to rest within the limits, and hold there. Only as :meth:`fly`."""
+        if (flown := self.mission_trajectory) is None or flown.is_held:
+            return
+        mission_progress = self.system.guidance.progress(self.time)
+        self._leave(self.time, lambda followed, progress: flown.hold(followed, progress, mission_progress))
+
+    def remaining(self) -> Iterator[MissionLeg]:
+        """Return what remains of the legs that were flown before :meth:`hold`."""
+        assert self.mission_trajectory is not None
+        return chain(self.mission_trajectory.remaining(), self.legs)
+
+    def resume(self, speed: float) -> None:
+        """Go on with the legs that were flown before :meth:`hold`, none faster than ``speed`` (m/s)."""
+        self._fly_on(self.remaining(), speed)
+
+    def fly(self, legs: Iterator[MissionLeg], speed: float) -> None:
         """Come to rest within the limits, then fly ``legs`` from there, none faster than ``speed`` (m/s).
 
         They end with a hold or a landing, after which others may follow. Only before the landing, and while no failsafe
         lands the payload.
         """
+        self.is_redirected = True
+        self._fly_on(legs, speed)
+
+    def _fly_on(self, legs: Iterator[MissionLeg], speed: float) -> None:
         assert self.mission_trajectory is not None
-        self._passed, self.legs, self.is_redirected = self.passed, MissionLegs(legs), True
+        self._flown, self.legs = self._legs_flown, MissionLegs(legs)
         go_on = self.mission_trajectory.go_on
         self._leave(self.time, lambda followed, progress: go_on(followed, progress, self.legs.flight(), speed))
 
@@ -245,11 +279,16 @@ class Flight:
 
     @property
     def passed(self) -> list[str]:
-        """Sources of what was done: waypoints reached, landings, legs on the ground, in the order of the flight."""
+        """Sources of what was done, of each once its last leg was: flown, landed, or carried out on the ground."""
+        done = [source for source, _ in groupby(self._legs_flown)]
+        return done[:-1] if done and done[-1] == self.next_source else done
+
+    @property
+    def _legs_flown(self) -> list[str]:
         flown = None if self._touchdown is not None else self.mission_trajectory
         if flown is None:
-            return self._passed
-        return [*self._passed, *flown.passed(self.system.guidance.progress(self.time))]
+            return self._flown
+        return [*self._flown, *flown.passed(self.system.guidance.progress(self.time))]
 
     @property
     def next_source(self) -> str | None:
@@ -344,9 +383,9 @@ class Flight:
             return
         self.control.stop_plans.clear()
         self.system.preflight.restart(landed=self.landings > 0)
-        self._passed = self.passed
+        self._flown = self._legs_flown
         self._sequence = self.ground_legs = GroundLegs(
-            self.system.team, time, self.legs.on_ground(), self.cargo, self._settings, self._passed.append
+            self.system.team, time, self.legs.on_ground(), self.cargo, self._settings, self._flown.append
         )
         self.phase = Phase.ON_GROUND
 
@@ -479,7 +518,7 @@ class Flight:
 
     def _touch_down(self, time: float, estimate: Estimate) -> None:
         assert self.mission_trajectory is not None
-        self._passed = [*self.passed, self.mission_trajectory.landing]
+        self._flown = [*self._legs_flown, self.mission_trajectory.landing]
         layout = self.control.controller.layout
         self._touchdown = Touchdown(
             RestTrajectory(estimate.x[layout.r_0], time),

@@ -3,22 +3,26 @@
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import chain, dropwhile
+from itertools import dropwhile
 
 import numpy as np
 
 from gcs.config import MotionConfig
-from gcs.mission.model import Lissajous, Mission
-from gcs.mission.route import Circle, FlyTo, GroundLeg, HoldForever, Land, Leg, TakeOff
-from gcs.mission.steps import Speed
+from gcs.flight.flown_legs import FlownLegs
+from gcs.flight.mission_legs import MissionLeg, legs_of
+from gcs.mission.model import Mission
+from gcs.mission.route import GroundLeg, Position, Route, TakeOff
 from idc_controller.arrays import Array
 from idc_controller.trajectory import paths
-from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
 from idc_controller.trajectory.trajectory import RestTrajectory, Trajectory
 from idc_controller.trajectory.waypoints import WaypointTrajectory
 
 _BACK, _BACK_STEP = 60.0, 0.1
 """s; how far back a place is looked for from which the landing place is seen, and in which steps."""
+_REST_STEP = 0.01
+"""s; between the times at which it is looked for where on its path a trajectory comes to rest."""
+_SAME = 1e-3
+"""m; a shorter way is none: a place of rest is reached before it is left."""
 
 
 class MissionTrajectory:
@@ -32,7 +36,7 @@ class MissionTrajectory:
         mission: Mission,
         position: Array,
         start: float,
-        legs: Iterator[Leg] | None = None,
+        legs: Iterator[MissionLeg] | None = None,
         pad: Array | None = None,
     ) -> None:
         """``legs``: up to the landing; None: those of the first flight. ``pad``: None: it stands there."""
@@ -45,20 +49,24 @@ class MissionTrajectory:
         """Time at which the final descent begins (s); inf while that is not known."""
         self.slow_from = math.inf
         """Time at which its slow part, near the ground, begins (s); inf while that is not known."""
-        self._takeoff = ""
-        """Source of the take-off."""
-        climb, legs = self._split(mission, position, _first_flight(mission) if legs is None else legs)
-        up = WaypointTrajectory(position, climb, self._motion.climb_limits, start=start)
+        if legs is None:
+            legs = dropwhile(lambda leg: isinstance(leg, GroundLeg), legs_of(mission))
+        first = next(legs)
+        if not isinstance(first, TakeOff):
+            raise TypeError(f"a flight begins with a take-off, not with {first}")
+        self._take_off: TakeOff | None = first
+        up = WaypointTrajectory(position, self._rise(first, position), self._motion.climb_limits, start=start)
         self._climb: Trajectory | None = up
-        self._above: Trajectory = up.then(lambda time, here: self._flown(mission, legs, time, here))
+        fastest = mission.reference.fastest if isinstance(mission.reference, Route) else 0.0
+        self._legs = FlownLegs(legs, max(self._motion.speed, fastest), self._motion)
+        self._above: Trajectory = up.then(lambda time, here: self._legs.trajectory(time, here))
         """Up to the place above the landing."""
         self.trajectory: Trajectory = self._above.then(self._land)
         self._braking = False
-        self._sources: list[str] = []
-        """Sources of the legs to waypoints that :attr:`_waypoints` has read."""
-        self._waypoints: WaypointTrajectory | None = None
-        self.landing = ""
-        """Source of the landing, once it is read."""
+        self._held_at = math.inf
+        """Progress (s) along what was flown at which it was left for a hold; inf: it is not held."""
+        self._rest = position
+        """Where it comes to rest then."""
 
     def set_motion(self, motion: MotionConfig) -> None:
         """Have other limits of what is planned from now on: after the next :meth:`go_on`, and of the landing."""
@@ -81,40 +89,72 @@ class MissionTrajectory:
         if time >= self.landing_from:
             return "land"
         # Evaluated at each call: the end of a lazy trajectory is known only when it is reached.
-        if self._climb is not None and time < self._climb.end:
+        if not self.is_held and self._climbs(time):
             return "climb"
         speed = math.hypot(*self.trajectory.derivatives(np.array([time]), 1)[1, 0].tolist())
         return "fly" if speed > self._settings.hold_speed else "hold"
 
+    def _climbs(self, time: float) -> bool:
+        return self._climb is not None and time < self._climb.end
+
+    @property
+    def is_held(self) -> bool:
+        """True from :meth:`hold` to :meth:`go_on`."""
+        return self._held_at < math.inf
+
+    @property
+    def landing(self) -> str:
+        """Source of the landing; empty: it was not read yet."""
+        return "" if self._legs.landing is None else self._legs.landing.source
+
     def passed(self, time: float) -> list[str]:
-        """Return the sources of the waypoints passed until ``time``, since take-off or the last :meth:`go_on`."""
-        climbed = [self._takeoff] if self._takeoff and self.phase(time) != "climb" else []
-        reached = [] if self._waypoints is None else [at for at in self._waypoints.passages if at <= time]
-        return [*climbed, *self._sources[: len(reached)]]
+        """Return the sources of the legs flown until ``time``, since take-off or the last :meth:`go_on`."""
+        time = min(time, self._held_at)
+        climbed = [] if self._take_off is None or self._climbs(time) else [self._take_off.source]
+        return [*climbed, *self._legs.passed(time)]
 
     def next_source(self, time: float) -> str | None:
         """Return the source of the waypoint, or landing, that is flown to at ``time``; None: it holds at the last."""
-        if self._climb is not None and time < self._climb.end:
-            return self._takeoff
-        passed = 0 if self._waypoints is None else sum(at <= time for at in self._waypoints.passages)
-        return self._sources[passed] if passed < len(self._sources) else self.landing or None
+        time = min(time, self._held_at)
+        if self._take_off is not None and self._climbs(time):
+            return self._take_off.source
+        return self._legs.next_source(time)
 
-    def go_on(self, followed: Trajectory, time: float, legs: Iterator[Leg], speed: float) -> None:
-        """Come to rest as soon as the limits allow, then fly ``legs``, none faster than ``speed``, and land there.
+    def hold(self, followed: Trajectory, time: float, progress: float) -> None:
+        """Come to rest as soon as the limits allow, and stay there until :meth:`go_on`.
+
+        Without effect while braking for a landing. ``progress``: along this trajectory (s); other arguments as of
+        :meth:`brake_and_land`.
+        """
+        if self._braking or self.is_held:
+            return
+        stop = followed.stop(time)
+        end = stop.end  # planned as a whole: it reads no leg any more
+        if followed is self.trajectory:
+            times = np.arange(time, max(end, time) + _REST_STEP, _REST_STEP)
+            ways, stopped = _ways(followed, times), _ways(stop, times)[-1]
+            progress = float(times[min(np.searchsorted(ways, stopped - _SAME), len(times) - 1)])
+        self._held_at, self._rest = progress, stop.position(end)
+        self.landing_from = self.slow_from = math.inf
+        self._above = self.trajectory = stop.then(lambda end, here: RestTrajectory(here, end, math.inf))
+
+    def remaining(self) -> list[MissionLeg]:
+        """Return what remains, where it came to rest to hold, of the legs that have been read."""
+        take_off = self._take_off
+        climb = [] if take_off is None or not self._climbs(self._held_at) else [replace(take_off, delay=0.0)]
+        return [*climb, *self._legs.remaining(self._held_at, _place(self._rest), _place(self._pad))]
+
+    def go_on(self, followed: Trajectory, time: float, legs: Iterator[MissionLeg], speed: float) -> None:
+        """Come to rest as soon as the limits allow, then fly ``legs``, none faster than ``speed`` (m/s), and land.
 
         Without effect while braking for a landing. Other arguments as of :meth:`brake_and_land`.
         """
         if self._braking:
             return
-        self._climb, self._waypoints = None, None
-        self.landing_from = self.slow_from = math.inf
-        first = next(legs)
-        legs, self._takeoff, self.landing = chain((first,), legs), "", ""
-        # Until the rest is reached, and legs are planned from there.
-        self._sources = [] if isinstance(first, Land) else [first.source]
-        if isinstance(first, Land):
-            self.landing = first.source
-        self._above = followed.stop(time).then(lambda t, here: self._along(legs, speed, t, here))
+        self._climb = self._take_off = None
+        self._held_at = self.landing_from = self.slow_from = math.inf
+        self._legs = flown = FlownLegs(legs, speed, self._motion)
+        self._above = followed.stop(time).then(flown.trajectory)
         self.trajectory = self._above.then(self._land)
 
     def brake_and_land(self, followed: Trajectory, time: float) -> None:
@@ -192,63 +232,10 @@ class MissionTrajectory:
     def _leg(self, place: Array) -> paths.Leg:
         return paths.Leg(place, self._motion.speed)
 
-    def _split(self, mission: Mission, position: Array, legs: Iterator[Leg]) -> tuple[list[paths.Leg], Iterator[Leg]]:
-        """Return the climb, and the legs that follow it."""
-        if isinstance(mission.reference, Lissajous):
-            altitude, delay = mission.reference.altitude, 0.0
-        else:
-            first = next(legs)
-            if not isinstance(first, TakeOff):
-                raise TypeError(f"a flight begins with a take-off, not with {first}")
-            altitude, delay, self._takeoff = -first.position[2], first.delay, first.source
-        top = np.array([position[0], position[1], -altitude])
-        speed = self._motion.climb_speed
-        climb = [paths.Leg(position, speed, delay), paths.Leg(top, speed)] if delay else [paths.Leg(top, speed)]
-        return climb, legs
-
-    def _flown(self, mission: Mission, legs: Iterator[Leg], time: float, here: Array) -> Trajectory:
-        if isinstance(mission.reference, Lissajous):
-            return self._figure(mission.reference, time, here)
-        speeds = [step.speed for step in mission.reference.steps if isinstance(step, Speed) and step.speed]
-        return self._along(legs, max([self._motion.speed, mission.reference.speed, *speeds]), time, here)
-
-    def _along(self, legs: Iterator[Leg], speed: float, time: float, here: Array) -> Trajectory:
-        """Return the trajectory along legs that are no faster than ``speed`` (m/s)."""
-        limits = replace(self._motion.limits, speed=speed)
-        self._sources = []
-        self._waypoints = WaypointTrajectory(here, self._legs(legs), limits, start=time, corner=self._motion.corner)
-        return self._waypoints
-
-    def _figure(self, figure: Lissajous, time: float, here: Array) -> Trajectory:
-        """Return the trajectory to the curve's beginning, along it, and back to ``here``."""
-        curve = LissajousCurve(figure.amplitude, down=-figure.altitude)
-        begin = curve.at(np.zeros((1, 1)))[0, 0]
-        limits = self._motion.limits
-        there = WaypointTrajectory(here, [paths.Leg(begin, self._motion.speed)], limits, start=time)
-        along = there.then(
-            lambda t, _: LissajousTrajectory(
-                curve, figure.angular_frequency, figure.duration, self._motion.curve_limits, start=t
-            )
-        )
-        return along.then(
-            lambda t, end: WaypointTrajectory(end, [paths.Leg(here, self._motion.speed)], limits, start=t)
-        )
-
-    def _legs(self, legs: Iterator[Leg]) -> Iterator[paths.Leg | paths.Circle]:
-        for leg in legs:
-            if not isinstance(leg, Land):
-                self._sources.append(leg.source)
-            if isinstance(leg, FlyTo):
-                yield paths.Leg(leg.position, leg.speed, leg.hold)
-            elif isinstance(leg, Circle):
-                yield paths.Circle(leg.centre, leg.radius, leg.turns, leg.speed, leg.clockwise)
-            elif isinstance(leg, HoldForever):
-                yield paths.Leg(leg.position, self._motion.speed, math.inf)
-            elif isinstance(leg, TakeOff):
-                yield paths.Leg(leg.position, self._motion.climb_speed, leg.delay)
-            elif isinstance(leg, Land):
-                self.landing = leg.source
-                return
+    def _rise(self, take_off: TakeOff, position: Array) -> list[paths.Leg]:
+        top, speed = np.array([position[0], position[1], take_off.position[2]]), self._motion.climb_speed
+        delay = [paths.Leg(position, speed, take_off.delay)] if take_off.delay else []
+        return [*delay, paths.Leg(top, speed)]
 
     def _land(self, time: float, here: Array) -> Trajectory:
         self.landing_from = time
@@ -267,7 +254,12 @@ class MissionTrajectory:
         return WaypointTrajectory(low, [last], self._motion.climb_limits, start=time)
 
 
-def _first_flight(mission: Mission) -> Iterator[Leg]:
-    if isinstance(mission.reference, Lissajous):
-        return iter(())
-    return dropwhile(lambda leg: isinstance(leg, GroundLeg), mission.reference.legs())
+def _place(position: Array) -> Position:
+    north, east, down = position.tolist()
+    return north, east, down
+
+
+def _ways(trajectory: Trajectory, times: Array) -> Array:
+    """Return the lengths (K,) (m) of its path up to ``times`` (K,) (s)."""
+    steps = np.diff(trajectory.derivatives(times, 0)[0], axis=0)
+    return np.append(0.0, np.cumsum(np.linalg.norm(steps, axis=1)))

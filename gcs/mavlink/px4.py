@@ -36,6 +36,9 @@ PARAM_LAND_SPEED = "MPC_LAND_SPEED"  #: m/s, the descent
 PARAM_TAKEOFF_ALTITUDE = "MIS_TAKEOFF_ALT"  #: m
 PARAM_SYSTEM_ID = "MAV_SYS_ID"  #: integer, read-only
 
+PREFLIGHT_DISARM = 10.0
+"""s for which an armed aircraft waits for a take-off: PX4's default of COM_DISARM_PRFLT."""
+
 LINK_LOSS_NOTHING, LINK_LOSS_HOLD, LINK_LOSS_RETURN, LINK_LOSS_LAND = range(4)
 """Values of NAV_DLL_ACT."""
 

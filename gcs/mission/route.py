@@ -131,6 +131,11 @@ class Route:
     holds_at_end: bool = False
     """Whether a route without a landing ends with a hold, as in PX4, and not with a landing at home."""
 
+    @property
+    def fastest(self) -> float:
+        """Return the speed that no leg exceeds (m/s)."""
+        return max([self.speed, *(step.speed for step in self.steps if isinstance(step, Speed) and step.speed)])
+
     def legs(self, start: Position | None = None) -> Iterator[Leg]:
         """Yield the legs in the order of flight, lazily: a route may be endless.
 

@@ -11,7 +11,7 @@ from gcs.mission.route import Circle, GroundLeg, Route
 from idc_controller.arrays import Array
 from idc_controller.geometry.free_space import BoundingCylinder, FreeSpace
 
-TRIED_LEGS = 2000
+CHECKED_LEGS = 2000
 """So many legs are looked at: a mission of more repeats itself."""
 _HIGHEST = 1e5
 """m, above all that is flown."""
@@ -79,7 +79,7 @@ def route_places(mission: Mission) -> Array:
         return curve_places(mission.reference)
     places: list[Array] = []
     here = np.zeros(3)
-    for leg in mission.reference.first_lap(TRIED_LEGS):
+    for leg in mission.reference.first_lap(CHECKED_LEGS):
         if isinstance(leg, GroundLeg):
             continue
         along = circle_places(leg, here) if isinstance(leg, Circle) else np.array([leg.position])

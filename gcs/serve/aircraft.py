@@ -37,7 +37,7 @@ class TeamAircraft:
     obeys_broadcasts = True
 
     def __init__(self, session: TeamSession, parameters: ParameterTable) -> None:
-        self.session, self._parameters = session, parameters
+        self.session, self.orders, self._parameters = session, session.orders, parameters
         self.base = session.world = replace(session.world, name="team", limits=None, faults=())
         """System, home and obstacles, without what was uploaded."""
         self._frame = LocalFrame(session.world.home)
@@ -86,7 +86,7 @@ class TeamAircraft:
         session = self.session
         if not session.is_armed:
             return ACCEPTED
-        if session.in_air and not session.is_at_stop:
+        if session.in_air and not self.orders.is_at_stop:
             return denied("Disarming denied: in the air")
         session.disarm()
         return ACCEPTED
@@ -113,16 +113,16 @@ class TeamAircraft:
         session = self.session
         if not session.is_armed:
             return rejected_for_now("Takeoff denied: not armed")
-        if session.is_at_stop:
+        if self.orders.is_at_stop:
             return rejected_for_now("Takeoff denied: the mission takes off by itself")
-        if not session.may_begin:
+        if not self.orders.may_begin:
             return rejected_for_now(f"Takeoff denied: {self._begun}")
         height = altitude - self.base.home.altitude
         if math.isnan(height):
             height = self._parameters[TAKEOFF_ALTITUDE]
         if (problem := self._why_not((*session.pad, -height))) is not None:
             return denied(f"Takeoff denied: {problem}", 7)
-        session.take_off(max(height, session.lowest))
+        self.orders.take_off(max(height, self.orders.lowest))
         return ACCEPTED
 
     def start_mission(self, first: int, now: float) -> Answer:
@@ -131,8 +131,8 @@ class TeamAircraft:
             if (answer := self.set_current_item(first, now)) != ACCEPTED:
                 return answer
         else:
-            self.session.first = ""
-        if self.session.mission is None:
+            self.orders.choose("")
+        if self.orders.mission is None:
             return _NO_MISSION
         if not self.session.is_armed and (answer := self.arm(now)) != ACCEPTED:
             return answer
@@ -141,9 +141,9 @@ class TeamAircraft:
     def pause(self, now: float) -> Answer:
         """Hold; the mission's current item stays. On the ground the mission ends."""
         session = self.session
-        if session.may_order:
-            session.hold()
-        elif session.is_at_stop:
+        if self.orders.may_order:
+            self.orders.hold()
+        elif self.orders.is_at_stop:
             session.disarm()
         elif session.is_armed:
             return self._refused("Hold")
@@ -153,32 +153,31 @@ class TeamAircraft:
 
     def resume(self, now: float) -> Answer:
         """Go on with the mission; on the ground it begins when the team is armed."""
-        if not self.session.is_armed and self.session.mission is not None:
+        if not self.session.is_armed and self.orders.mission is not None:
             self.session.mode = px4.MODE_MISSION
             return ACCEPTED
         return self._begin_mission()
 
     def reposition(self, goal: Reposition, now: float) -> Answer:
         """Fly to a place round what is known, and hold there."""
-        session = self.session
-        if not session.may_order:
+        if not self.orders.may_order:
             return self._refused("Reposition")
-        here = session.position
+        here = self.orders.position
         place = self._local(Place(*goal[:3]), here)
         if (problem := self._why_not(place)) is not None:
             return denied(f"Reposition denied: {problem}")
         if not math.isnan(goal.speed) and (problem := self._wrong_speed(goal.speed)) is not None:
             return denied(f"Reposition denied: {problem}", 1)
-        session.go_to(place, None if math.isnan(goal.speed) else goal.speed)
+        self.orders.go_to(place, None if math.isnan(goal.speed) else goal.speed)
         return ACCEPTED
 
     def change_speed(self, speed: float, now: float) -> Answer:
         """Fly with another speed (m/s) from now on."""
-        if self.session.is_at_stop:
+        if self.orders.is_at_stop:
             return self._refused("Speed change")
         if (problem := self._wrong_speed(speed)) is not None:
             return denied(f"Speed change denied: {problem}", 2)
-        self.session.change_speed(speed)
+        self.orders.change_speed(speed)
         return ACCEPTED
 
     def turn(self, turn: Turn, now: float) -> Answer:
@@ -195,19 +194,19 @@ class TeamAircraft:
 
     def _begin_mission(self) -> Answer:
         session = self.session
-        if session.mission is None:
+        if self.orders.mission is None:
             return _NO_MISSION
-        if session.is_at_stop:
+        if self.orders.is_at_stop or self.orders.may_begin_elsewhere:
             return ACCEPTED  # it goes on by itself
-        if session.in_air and not session.may_order:
+        if session.in_air and not self.orders.may_order:
             return self._refused("Mission")
-        if not (session.in_air or session.may_begin):
+        if not (session.in_air or self.orders.may_begin):
             return rejected_for_now(f"Mission denied: {self._begun if session.is_armed else 'not armed'}")
-        if (problem := session.why_unflyable(session.first, in_air=session.in_air)) is not None:
+        if (problem := self.orders.why_unflyable()) is not None:
             return denied(f"Mission denied: {problem}")
         if self._finished or not session.in_air:
             self._reached, self._finished = [], False
-        session.fly_mission()
+        self.orders.fly_mission()
         return ACCEPTED
 
     @property
@@ -217,31 +216,31 @@ class TeamAircraft:
 
     def _return(self) -> Answer:
         session = self.session
-        if session.is_at_stop:
+        if self.orders.is_at_stop:
             session.disarm()
             return ACCEPTED
-        if not session.may_order:
+        if not self.orders.may_order:
             return self._refused("Return")
-        north, east, _ = session.position
+        north, east, _ = self.orders.position
         rally = (self._frame.local(*point.place, point.z) for point in self._plans[PlanType.RALLY])
         points = [(0.0, 0.0), *(position[:2] for position in rally)]
-        session.land(min(points, key=lambda point: math.dist(point, (north, east))))
+        self.orders.land(min(points, key=lambda point: math.dist(point, (north, east))))
         return ACCEPTED
 
     def _land(self) -> Answer:
-        if self.session.is_at_stop:
+        if self.orders.is_at_stop:
             self.session.disarm()
             return ACCEPTED
-        if not self.session.may_order:
+        if not self.orders.may_order:
             return self._refused("Land")
-        self.session.land()
+        self.orders.land()
         return ACCEPTED
 
     def _refused(self, what: str) -> Answer:
         """Return the refusal of an order that the phase of the flight does not allow."""
         session = self.session
         reason = "not in the air"
-        if session.is_at_stop:
+        if self.orders.is_at_stop:
             reason = "the mission stands on the ground"
         elif session.in_air:
             reason = session.flight.reason or f"in phase {session.flight.phase.value}"
@@ -261,7 +260,7 @@ class TeamAircraft:
 
     def _why_not(self, place: Position) -> str | None:
         """Return why the payload may not be flown to a place; None: it may."""
-        lowest = self.session.lowest
+        lowest = self.orders.lowest
         if not math.dist(place, (0.0, 0.0, 0.0)) <= FARTHEST:
             return f"farther than {FARTHEST:g} m from home"
         if -place[2] < lowest - 1e-3:
@@ -277,15 +276,15 @@ class TeamAircraft:
     def take_mission(self, items: Sequence[MissionItem], current: int, on_reached: Callable[[int], None]) -> Answer:
         """Have another mission, of which ``current`` is flown first; ``on_reached`` is called with each item done."""
         session = self.session
-        if session.flies_mission and session.is_armed:
-            if not session.is_paused:
+        if self.orders.flies_mission and session.is_armed:
+            if not self.orders.is_paused:
                 return rejected_for_now("Mission refused: the one before is being flown; hold first")
-            session.forget_mission()
+            self.orders.forget_mission()
         self._plans[PlanType.MISSION] = tuple(items)
         labels = [label(item, number) for number, item in enumerate(items)]
         self._take(mission_of(self._plans, self.base) if items else None, labels)
         self._on_reached = on_reached
-        session.first = labels[current] if current else ""
+        self.orders.choose(labels[current] if current else "")
         return ACCEPTED
 
     def load(self, mission: Mission) -> Answer:
@@ -301,8 +300,9 @@ class TeamAircraft:
         return ACCEPTED
 
     def _take(self, mission: Mission | None, labels: list[str]) -> None:
-        self.session.mission, self._labels = mission, labels
-        self.session.first, self._reached, self._finished = "", [], False
+        self.orders.mission, self._labels = mission, labels
+        self.orders.choose("")
+        self._reached, self._finished = [], False
         self.session.changes += 1
 
     def take_fence(self, items: Sequence[MissionItem]) -> None:
@@ -310,8 +310,10 @@ class TeamAircraft:
         self._plans[PlanType.FENCE] = tuple(items)
         session = self.session
         session.world = mission_of(self._plans, self.base)
-        if session.mission is not None:
-            session.mission = replace(session.mission, boundary=session.world.boundary, excluded=session.world.excluded)
+        if self.orders.mission is not None:
+            self.orders.mission = replace(
+                self.orders.mission, boundary=session.world.boundary, excluded=session.world.excluded
+            )
 
     def take_rally_points(self, items: Sequence[MissionItem]) -> None:
         """Have other rally points, places where a return may land, from now on."""
@@ -320,33 +322,31 @@ class TeamAircraft:
     def set_current_item(self, index: int, now: float) -> Answer:
         """Go on with item ``index``."""
         session = self.session
-        if session.mission is None or not 0 <= index < len(self._labels):
+        if self.orders.mission is None or not 0 <= index < len(self._labels):
             return denied(f"Mission item denied: {index} of {len(self._labels)} items")
-        assert isinstance(session.mission.reference, Route)
-        flown = {step.source for step in session.mission.reference.steps}
+        assert isinstance(self.orders.mission.reference, Route)
+        flown = {step.source for step in self.orders.mission.reference.steps}
         after = next((name for name in self._labels[index:] if name in flown), None)
         if after is None:
             return denied(f"Mission item denied: after {self._labels[index]} nothing is flown")
-        if session.is_at_stop:
+        is_begun = self.orders.may_begin_elsewhere or (session.in_air and self.orders.flies_mission)
+        if (self.orders.is_at_stop and not is_begun) or (session.in_air and is_begun and not self.orders.may_order):
             return self._refused("Mission item")
-        if session.in_air and session.flies_mission:
-            if not session.may_order:
-                return self._refused("Mission item")
-            if (problem := session.why_unflyable(after, in_air=True)) is not None:
-                return denied(f"Mission item denied: {problem}")
-            session.first = after
-            session.fly_mission(anew=True)
-        session.first = after
+        if is_begun and (problem := self.orders.why_not_at(after)) is not None:
+            return denied(f"Mission item denied: {problem}")
+        self.orders.choose(after)
+        if is_begun:
+            self.orders.fly_item()
         return ACCEPTED
 
     @property
     def current_item(self) -> int:
         """The item of the mission that is flown to, or will be."""
         session, labels = self.session, self._labels
-        source = (session.flight.next_source if session.flies_mission else "") or session.first
+        source = (session.flight.next_source if self.orders.flies_mission else "") or self.orders.first
         if source in labels and not self._finished:
             return labels.index(source)
-        if not (self._finished or session.flies_mission):
+        if not (self._finished or self.orders.flies_mission):
             return 0
         done = next((labels.index(reached) for reached in reversed(self._reached) if reached in labels), -1)
         return max(min(done + 1, len(labels) - 1), 0)
@@ -366,7 +366,7 @@ class TeamAircraft:
         session = self.session
         if session.flight is not self._flight:
             self._flight, self._seen, self._reported_at = session.flight, 0, math.nan
-        if not session.flies_mission or session.flight.time == self._reported_at:
+        if not self.orders.flies_mission or session.flight.time == self._reported_at:
             return  # nothing is reached between two control steps
         self._reported_at = session.flight.time
         passed = session.flight.passed
@@ -374,4 +374,4 @@ class TeamAircraft:
             if source in self._labels:
                 self._reached.append(source)
                 self._on_reached(self._labels.index(source))
-        self._seen, self._finished = len(passed), session.is_mission_done
+        self._seen, self._finished = len(passed), self.orders.is_mission_done

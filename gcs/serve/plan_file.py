@@ -13,6 +13,7 @@ from gcs.mavlink.services.mission_item import MissionItem, PlanType
 from gcs.mission.commands import command_name
 from gcs.mission.model import Mission
 from gcs.mission.read import mission_of_plan
+from gcs.serve.parameters import TAKEOFF_ALTITUDE
 
 UPLOADED = Path("plan")
 """In place of a file's name, where a plan was uploaded."""
@@ -27,7 +28,16 @@ _CIRCLES = {
 _PX4, _MULTICOPTER = mavlink.MAV_AUTOPILOT_PX4, mavlink.MAV_TYPE_QUADROTOR
 
 _TAKE_OFF = MissionItem(
-    mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_CMD_NAV_TAKEOFF, True, 0.0, 0.0, 0.0, math.nan, 0, 0, 5.0
+    mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT,
+    mavlink.MAV_CMD_NAV_TAKEOFF,
+    True,
+    0.0,
+    0.0,
+    0.0,
+    math.nan,
+    0,
+    0,
+    TAKEOFF_ALTITUDE,
 )
 
 Plans = Mapping[PlanType, Sequence[MissionItem]]

@@ -20,7 +20,7 @@ class TeamPlanRules:
         self._aircraft = aircraft
 
     def check_item(self, plan_type: PlanType, item: MissionItem, number: int) -> MissionAnswer:
-        """See :meth:`.PlanRules.check_item`: what is wrong with an item is said of the whole plan."""
+        """See :meth:`.PlanRules.check_item`: an item is checked with the whole plan."""
         return TAKEN
 
     def check_plan(self, plan_type: PlanType, items: Sequence[MissionItem]) -> MissionAnswer:

@@ -1,37 +1,28 @@
-"""The team between flights and in flight: which ground station flies now, and what it was ordered to do."""
+"""The team between flights and in flight: which ground station flies now, its mode, and what is to be reported."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
-from itertools import chain
 from typing import TYPE_CHECKING, Protocol
 
 from gcs.flight.alarms import Alarm
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.flight import Flight
 from gcs.flight.ground_station import GroundStation
-from gcs.flight.phase import CONTROLLED, IN_AIR, STANDING, Phase
+from gcs.flight.phase import CONTROLLED, Phase
 from gcs.flight.reconfiguration import reconfigure
 from gcs.mavlink import px4
-from gcs.mission.model import Lissajous, Mission
-from gcs.mission.route import FlyTo, HoldForever, Land, Leg, Position, Route
-from gcs.mission.steps import Climb, Place, Speed, Stay
+from gcs.mission.model import Mission
+from gcs.serve.orders import Orders, take_off_route
+from gcs.serve.parameters import TAKEOFF_ALTITUDE
 
 if TYPE_CHECKING:
     from gcs.config import SystemConfig
 
-PREFLIGHT_DISARM = 10.0
-"""s for which armed vehicles wait for a take-off, as COM_DISARM_PRFLT of PX4."""
 _RUN_DOWN = 2.0
 """s after disarming, for rotors and load to come to rest before the records of the flight are closed."""
-WAITING_ALTITUDE = 3.0
-"""m; of the take-off that a flight has until one is ordered. It is not flown."""
-_AT_REST = 0.1
-"""m/s; below which the payload is at rest."""
-_THERE = 0.1
-"""m; within which it is where it was ordered: it overshoots where it is paused."""
 
 
 class OpenFlight(Protocol):
@@ -42,7 +33,7 @@ class OpenFlight(Protocol):
         """The ground station."""
 
     def close(self) -> str:
-        """Close the records; return what is to be said of them, empty: there are none."""
+        """Close the records; return the STATUSTEXT of their flight, empty: there are none."""
 
 
 class TeamSession:
@@ -53,31 +44,23 @@ class TeamSession:
 
     def __init__(self, world: Mission, open_flight: Callable[[Mission, bool], OpenFlight]) -> None:
         """``open_flight`` opens a flight of a mission, with records or without."""
-        steps = (Climb("take-off", Place((0.0, 0.0), WAITING_ALTITUDE)), Stay("take-off", Place()))
-        resting = world.system.resting_altitude
-        self.world = replace(world, reference=Route(steps, world.system.motion.speed, resting))
+        self.world = replace(world, reference=take_off_route(world.system, (0.0, 0.0), TAKEOFF_ALTITUDE))
         """System, home and obstacles of every flight, and the fence of the plans that were uploaded."""
         self._open_flight = open_flight
         self._opened = open_flight(world, False)
         self._wait()
+        self.orders = Orders(self)
+        """What the flight is ordered to do."""
         self.mode = px4.MODE_HOLD
         """The custom mode that was ordered last."""
-        self.mission: Mission | None = None
-        """The mission that was uploaded; None: there is none."""
-        self.first = ""
-        """Source of the item at which the mission is begun, or goes on; empty: its beginning."""
-        self.speed: float | None = None
-        """Speed that was ordered in place of the mission's (m/s); None: none."""
         self.pad = 0.0, 0.0
         """Where the payload stood when it was armed last, north and east."""
         self.changes = 0
         """Rises with every change that is to be reported."""
         self.notices: list[str] = []
-        """What is to be said to operators, not sent yet."""
+        """STATUSTEXTs that have not been sent yet."""
         self._alarms = 0
         self._cleared_until = math.inf
-        self._planned_speed = 0.0
-        self._flies_mission = False
         self._phase = Phase.CONNECT
         self._now = 0.0
         self.run_down = -math.inf
@@ -110,87 +93,9 @@ class TeamSession:
         return self.flight.may_arm and not self.flight.ended
 
     @property
-    def may_order(self) -> bool:
-        """True while the payload can be ordered elsewhere: in the air, before its landing, without a failsafe.
-
-        Also where it was paused so late that it rests in its landing.
-        """
-        flight = self.flight
-        return flight.phase in IN_AIR and not flight.reason and (flight.phase is not Phase.LAND or self.is_paused)
-
-    @property
-    def may_begin(self) -> bool:
-        """True while a take-off can be ordered: armed, or about to be, and none was ordered yet."""
-        return self.is_armed and not (self.in_air or self.flight.may_take_off or self.flight.stands_down)
-
-    @property
-    def is_at_stop(self) -> bool:
-        """True while a mission stands on the ground, and is to go on by itself."""
-        flight = self.flight
-        goes_on = self._flies_mission and flight.may_take_off and not flight.reason and self.is_armed
-        return goes_on and flight.phase in STANDING and (not flight.legs.ended or flight.phase is Phase.ON_GROUND)
-
-    @property
-    def is_paused(self) -> bool:
-        """True while the mission is paused on its way."""
-        return self.flight.system.guidance.speed_limit == 0.0
-
-    @property
-    def is_settled(self) -> bool:
-        """True while the payload holds at the end of the last order, or is paused at rest."""
-        flight = self.flight
-        if flight.phase not in IN_AIR:
-            return not self.is_armed
-        if self.is_paused:
-            record = flight.last_record
-            if record is None:
-                return False
-            place, velocity = record.estimate.x[:3].tolist(), record.estimate.x[3:6].tolist()
-            return math.hypot(*velocity) < _AT_REST and math.dist(place, self.position) < _THERE
-        return flight.phase is Phase.HOLD and flight.next_source is None
-
-    @property
-    def flies_mission(self) -> bool:
-        """True while the mission is flown, be it paused."""
-        return self._flies_mission
-
-    @property
     def ended(self) -> bool:
         """True if it is closing and the payload is on the ground."""
         return self.closing and not self.is_armed and not self._now < self.run_down
-
-    @property
-    def position(self) -> Position:
-        """Where the payload is planned to be now."""
-        flight = self.flight
-        assert flight.mission_trajectory is not None
-        progress = flight.system.guidance.progress(flight.time)
-        north, east, down = flight.mission_trajectory.trajectory.position(progress).tolist()
-        return north, east, down
-
-    @property
-    def lowest(self) -> float:
-        """Least height (m above home) at which the payload is flown to a place."""
-        system = self.world.system
-        return system.resting_altitude + system.guidance.navigator.ground_clearance
-
-    @property
-    def is_mission_done(self) -> bool:
-        """True if the whole mission was flown, and at its end landed or held for good."""
-        flight = self.flight
-        if not self._flies_mission:
-            return False
-        if flight.phase in IN_AIR:
-            return flight.phase is Phase.HOLD and flight.next_source is None
-        return flight.legs.ended and flight.landings > 0 and not flight.reason
-
-    def why_unflyable(self, first: str, *, in_air: bool) -> str | None:
-        """Return why the mission cannot be begun at an item, or its beginning (empty), from here; None: it can."""
-        assert self.mission is not None
-        if not isinstance(route := self.mission.reference, Route):
-            return "a curve begins on the ground" if in_air else None
-        route = route.beginning_at(first) if first else route
-        return route.problem(self._above_ground if in_air else None)
 
     # Orders
 
@@ -204,86 +109,17 @@ class TeamSession:
         self._alarms, self._cleared_until = 0, math.inf
         self.changes += 1
 
-    def take_off(self, altitude: float) -> None:
-        """Take off to ``altitude`` (m above home), and hold there."""
-        here = Place(self.pad, altitude)
-        steps = (Climb("take-off", here), Stay("take-off", here))
-        self._begin(self.world, Route(steps, self._cruise_speed(), self.world.system.resting_altitude))
-        self._set_mode(px4.MODE_TAKEOFF)
-
-    def fly_mission(self, *, anew: bool = False) -> None:
-        """Fly the mission from the item that was chosen on: take off for it, go on with it, or begin it in the air.
-
-        ``anew``: leave the item that is flown to.
-        """
-        assert self.mission is not None
-        route = self.mission.reference
-        if isinstance(route, Lissajous):
-            self._begin(self.mission, route)
-            self._flies_mission = True
-            self._set_mode(px4.MODE_MISSION)
-            return
-        resumed = self._flies_mission and self.in_air and self.is_paused and not anew
-        if resumed and self._wanted_speed > self._planned_speed:
-            resumed, self.first = False, self.flight.next_source or self.first
-        if self.first:
-            route = route.beginning_at(self.first)
-        if self.speed is not None:
-            route = replace(route, speed=self.speed)
-        if not self.in_air:
-            self._begin(self.mission, route)
-        elif resumed:
-            self._limit_speed()
-        else:
-            self._fly(route.legs(self._above_ground), route.speed)
-        self._flies_mission = True
-        self._set_mode(px4.MODE_MISSION)
-
-    def hold(self) -> None:
-        """Come to rest on the way, and hold."""
-        self.flight.system.guidance.speed_limit = 0.0
-        self._set_mode(px4.MODE_HOLD)
-
-    def go_to(self, place: Position, speed: float | None) -> None:
-        """Fly to a place, and hold there."""
-        legs: list[Leg] = [FlyTo(place, speed or self._cruise_speed(), "go to"), HoldForever(place, "go to")]
-        self._leave_mission(legs)
-        self._set_mode(px4.MODE_HOLD)
-
-    def land(self, over: tuple[float, float] | None = None) -> None:
-        """Land ``over`` a place (north, east), after a flight at the present altitude; None: where it is."""
-        legs: list[Leg] = []
-        if over is not None:
-            legs.append(FlyTo((*over, self._above_ground[2]), self._cruise_speed(), "return"))
-        self._leave_mission([*legs, Land((0.0, 0.0, 0.0), "land")])
-        self._set_mode(px4.MODE_LAND if over is None else px4.MODE_RETURN)
-
-    def change_speed(self, speed: float) -> None:
-        """Fly with another ``speed`` (m/s) from now on; faster than planned, from the next rest on."""
-        self.speed = speed
-        self._have_speed()
-
     def configure(self, system: SystemConfig) -> None:
         """Have other settings: at once, or from the next legs on, or from the next arming; as the flight takes them."""
-        before, cruise = self.world.system.motion.speed, system.motion.speed
+        before = self.world.system.motion.speed
         self.world = replace(self.world, system=system)
-        if self.mission is not None:
-            route = self.mission.reference
-            if isinstance(route, Route) and route.speed == before:  # it names none
-                route = replace(route, speed=cruise)
-            self.mission = replace(self.mission, system=system, reference=route)
         reconfigure(self.flight, system)
-        if self.speed is None and cruise != before:
-            self._have_speed()
-
-    def forget_mission(self) -> None:
-        """Leave a paused mission for good, and stay where it was paused."""
-        self._flies_mission = False
+        self.orders.configure(before)
 
     def disarm(self) -> None:
         """Stay on the ground, with stopped rotors; a mission ends there."""
-        if self.is_at_stop:
-            self._flies_mission = False
+        if self.orders.is_at_stop:
+            self.orders.forget_mission()
             self.notices.append("Mission ended on the ground")
         self.flight.stand_down()
 
@@ -294,70 +130,10 @@ class TeamSession:
             self.is_interrupted = True
             self.station.raise_failsafe(now, failsafe, reason)
 
-    def _begin(self, mission: Mission, route: Route | Lissajous) -> None:
-        self._planned_speed = route.speed if isinstance(route, Route) else math.inf
-        self.flight.begin(replace(mission, reference=route))
-
-    def _leave_mission(self, legs: list[Leg]) -> None:
-        if self._flies_mission:
-            self.first = self.flight.next_source or ""
-            self._flies_mission = False
-        self._fly(iter(legs), max([self._cruise_speed(), *(leg.speed for leg in legs if isinstance(leg, FlyTo))]))
-
-    @property
-    def _above_ground(self) -> Position:
-        """Where the payload is, or, lower than it may be flown, above that."""
-        north, east, down = self.position
-        return north, east, min(down, -self.lowest)
-
-    def _fly(self, legs: Iterator[Leg], speed: float) -> None:
-        """Fly ``legs``, none faster than ``speed`` (m/s); from too low for a level flight first straight up."""
-        first, up = next(legs), list[Leg]()
-        if self._above_ground != self.position and not isinstance(first, Land):
-            up.append(FlyTo(self._above_ground, self.world.system.motion.climb_speed, first.source))
-        self._planned_speed = speed
-        self.flight.fly(chain(up, (first,), legs), speed)
-        self.changes += 1
-
-    def _have_speed(self) -> None:
-        """Fly with the wanted speed: a slower one at once, a faster one, or beside the mission's own, on new legs."""
-        if not self.may_order or self.is_paused:
-            return
-        if self._flies_mission and self.flight.next_source and self._needs_new_legs:
-            self.first = self.flight.next_source
-            self.fly_mission(anew=True)
-        else:
-            self._limit_speed()
-
-    @property
-    def _needs_new_legs(self) -> bool:
-        assert self.mission is not None
-        if not isinstance(self.mission.reference, Route):
-            return False
-        has_own = any(isinstance(step, Speed) for step in self.mission.reference.steps)
-        return self._wanted_speed > self._planned_speed or (self.speed is None and has_own)
-
-    @property
-    def _wanted_speed(self) -> float:
-        """The speed that was ordered, else the mission's, else that of what is flown without one (m/s)."""
-        if self.speed is None and self._flies_mission and self.mission is not None:
-            return self.mission.reference.speed if isinstance(self.mission.reference, Route) else math.inf
-        return self._cruise_speed()
-
-    def _limit_speed(self) -> None:
-        wanted = self._wanted_speed
-        self.flight.system.guidance.speed_limit = wanted if wanted < self._planned_speed else math.inf
-
-    def _cruise_speed(self) -> float:
-        return self.world.system.motion.speed if self.speed is None else self.speed
-
-    def _set_mode(self, mode: int) -> None:
+    def enter(self, mode: int) -> None:
+        """Report a custom mode from now on."""
         self.mode = mode
         self.changes += 1
-
-    def _reset(self) -> None:
-        self.first, self.speed, self._alarms = "", None, 0
-        self._flies_mission = False
 
     def _open(self, *, recorded: bool) -> None:
         """Open a flight of the team as the one before has left it: its cargo, and where it stands."""
@@ -380,12 +156,12 @@ class TeamSession:
             self.changes += 1
         if flight.phase is Phase.ARM and not flight.may_take_off and flight.system.team.armed:
             if self._cleared_until == math.inf:
-                self._cleared_until = now + PREFLIGHT_DISARM
+                self._cleared_until = now + px4.PREFLIGHT_DISARM
             elif now > self._cleared_until:
-                self.notices.append(f"Disarmed: no take-off for {PREFLIGHT_DISARM:g} s")
+                self.notices.append(f"Disarmed: no take-off for {px4.PREFLIGHT_DISARM:g} s")
                 flight.stand_down()
         if self.mode == px4.MODE_TAKEOFF and flight.phase is Phase.HOLD:
-            self._set_mode(px4.MODE_HOLD)
+            self.enter(px4.MODE_HOLD)
         if flight.ended and flight.may_arm and self.run_down == -math.inf:
             self.run_down = now + _RUN_DOWN
         if flight.ended and not self.closing and now >= self.run_down:
@@ -400,14 +176,15 @@ class TeamSession:
 
     def _end(self, flight: Flight) -> None:
         """Close the records of a flight that has ended, and wait for the next one."""
-        said = self._opened.close()
+        text = self._opened.close()
         if flight.may_arm:
-            self.notices.append(said or "Flight ended")
+            self.notices.append(text or "Flight ended")
         self.last_reason, self.run_down = flight.reason, -math.inf
         self._open(recorded=False)
         self._wait()
-        self._reset()
-        self._set_mode(px4.MODE_HOLD)
+        self.orders.reset()
+        self._alarms = 0
+        self.enter(px4.MODE_HOLD)
 
     def close(self) -> str:
         """Close the records."""

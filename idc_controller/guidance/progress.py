@@ -23,7 +23,7 @@ class Guidance:
     rate = 1.0
     """Progress rate in force."""
     speed_limit = math.inf
-    """Speed (m/s) that is commanded in place of the mission's where that is faster; 0: paused."""
+    """Speed (m/s) that is commanded in place of the mission's where that is faster."""
     sight = SightLimit()
     """Limit of the progress rate by sight."""
     detours = 0
@@ -57,8 +57,13 @@ class Guidance:
         """Return the mission's progress (s) at ``time`` (s)."""
         return time
 
-    def stopping_trajectory(self, time: float, mission: Trajectory) -> tuple[Trajectory, float]:
-        """Return the trajectory to stop from at ``time``, and the progress along it (s)."""
+    def stopping_trajectory(
+        self, time: float, mission: Trajectory, rest: Array | None = None
+    ) -> tuple[Trajectory, float]:
+        """Return the trajectory to stop from at ``time``, and the progress along it (s).
+
+        ``rest``: place (3,) (m) where a deflected payload comes to rest clear of obstacles; None: where that is free.
+        """
         return mission, time
 
     def start(self) -> None:
@@ -93,6 +98,7 @@ class AdaptiveGuidance(Guidance):
         """Whether the speed limit that is commanded lowered the rate that is wanted last."""
         self._tracked: PayloadTrajectory | None = None
         self._deflected = False
+        """Whether what is tracked deviates from the reference: by an obstacle, or a progress rate that has changed."""
         self._restart: tuple[float, float] | None = None
         """Time at which another mission was given and its progress then (s); until the next step."""
 
@@ -144,17 +150,25 @@ class AdaptiveGuidance(Guidance):
         """See :meth:`Guidance.progress`; on a detour, where that leads back to the mission."""
         return self.navigator.mission_progress(self._followed_progress(time))
 
-    def stopping_trajectory(self, time: float, mission: Trajectory) -> tuple[Trajectory, float]:
+    def stopping_trajectory(
+        self, time: float, mission: Trajectory, rest: Array | None = None
+    ) -> tuple[Trajectory, float]:
         """See :meth:`Guidance.stopping_trajectory`.
 
-        While the tracked trajectory is deflected, or the payload held up, the mission is no place to stop at: then it
-        is a rest near where the payload is.
+        While the tracked trajectory is deflected, or the payload does not move, the mission is no place to stop at:
+        then it is a rest near where the payload is. While the progress is slow it is what is followed, as slow.
         """
         current = self._current
         if current is None or self._tracked is None or (not self._deflected and current.rate == 1.0):
             return self.navigator.followed(mission), self._followed_progress(time)
+        if not self._deflected and current.rate > 0.0:
+            followed = self.navigator.followed(mission)
+            return followed.scaled(self._followed_progress(time), current.rate, time), time
+        if rest is not None:
+            return RestTrajectory(rest, time), time
         position, velocity = self._tracked.derivatives(np.array([time]), 1)[:, 0]
-        return RestTrajectory(position + 0.5 * self.settings.stopping_time * velocity, time), time
+        stopping = self.navigator.settings.limits.stopping_time(math.hypot(*velocity.tolist()))
+        return RestTrajectory(position + 0.5 * stopping * velocity, time), time
 
     def start(self) -> None:
         """See :meth:`Guidance.start`."""
@@ -168,7 +182,7 @@ class AdaptiveGuidance(Guidance):
     def restart(self, time: float, progress: float) -> None:
         """See :meth:`Guidance.restart`."""
         self.navigator.reset()
-        if progress != self._followed_progress(time):
+        if progress != self._followed_progress(time) or (self._current is not None and self._current.rate != 1.0):
             self._next_rate = 1.0
         self._restart = time, progress
 
@@ -219,7 +233,7 @@ class AdaptiveGuidance(Guidance):
             return 1.0
         velocity = current.trajectory.derivatives(current.progress + self._stages, 1)[1]
         planned = float(np.linalg.norm(velocity, axis=1).max())
-        return min(self.speed_limit / planned, 1.0) if planned > 0.0 else float(self.speed_limit > 0.0)
+        return min(self.speed_limit / planned, 1.0) if planned > 0.0 else 1.0
 
     def _held_up_rate(self) -> float:
         """Return the rate by which the mission counts as held up.

@@ -21,7 +21,6 @@ class ProgressSettings(SettingsTable):
     rate_step_in_wind: float = 0.01
     drag_limit: float = 0.45  # drag on the payload, over its weight, above which the rate is lowered
     slowest_in_wind: Share = 0.6  # rate that wind does not lower it beyond: slower counts as held up
-    stopping_time: float = 2.0  # s; in which the payload is brought to rest when a deflected trajectory is broken off
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -109,8 +108,7 @@ class SightSettings(SettingsTable):
     @property
     def stopping_delay(self) -> float:
         """Time of a stop beyond speed over deceleration (s): jerk, snap and crackle are limited."""
-        m = self.limits
-        return m.acceleration / m.jerk + m.jerk / m.snap + m.snap / m.crackle
+        return self.limits.stopping_time(0.0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

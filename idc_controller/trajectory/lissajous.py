@@ -6,6 +6,7 @@ follow exactly by the chain rule: the trajectory never leaves the curve.
 
 import math
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -81,7 +82,7 @@ _RAMP = np.array([70.0, -315.0, 540.0, -420.0, 126.0]) / [10.0, 9.0, 8.0, 7.0, 6
 
 
 class LissajousTrajectory(Trajectory):
-    """The curve from phase 0 at rest, ``duration`` s at the full phase rate, then to rest.
+    """The curve from rest at a phase, ``duration`` s at the full phase rate, then to rest.
 
     Args:
         curve: the curve.
@@ -89,6 +90,7 @@ class LissajousTrajectory(Trajectory):
         duration: s at the full rate; the ramps before and after come on top.
         limits: hold at every time; the ramps are as short as they allow.
         start: s, when the motion begins.
+        phase: rad, where it begins.
 
     Raises:
         TrajectoryError: a value has no meaning, or the curve at the full rate exceeds the limits.
@@ -101,6 +103,7 @@ class LissajousTrajectory(Trajectory):
         duration: float,
         limits: Limits,
         start: float = 0.0,
+        phase: float = 0.0,
     ) -> None:
         self.curve = curve
         self.limits = limits
@@ -109,12 +112,12 @@ class LissajousTrajectory(Trajectory):
         start = finite(start, "start")
         check_full_rate(curve, rate, limits)
         # A little gentler at first, so that it can always stop while it gathers speed.
-        up, phase = _shortest_ramp(curve, _gentler(curve, rate, limits), 0.0, 0.0, rate)
-        down, _ = _shortest_ramp(curve, limits, phase + rate * duration, rate, 0.0)
+        up, reached = _shortest_ramp(curve, _gentler(curve, rate, limits), phase, 0.0, rate)
+        down, _ = _shortest_ramp(curve, limits, reached + rate * duration, rate, 0.0)
         self.full_rate = (start + up, start + up + duration)
         """Times, s, between which the phase runs at the full rate."""
         knots = np.array([start, *self.full_rate, self.full_rate[1] + down])
-        self._set_phase(_phase(knots, [0.0, rate, rate, 0.0], 0.0))
+        self._set_phase(_phase(knots, [0.0, rate, rate, 0.0], phase))
 
     def _set_phase(self, phase: PPoly) -> None:
         self._phase, self._rate, self._shape = (phase.c, phase.x), phase.derivative(), self.curve.as_array()
@@ -145,6 +148,15 @@ class LissajousTrajectory(Trajectory):
                 shorter, duration = (shorter, middle) if self._brakes(begin, middle) else (middle, duration)
             end, best = begin + duration, (begin, duration)
         return self if best is None else _Stopped(self, self._braked(*best))
+
+    def scaled(self, begin: float, rate: float, time: float) -> Trajectory:
+        """See ``Trajectory.scaled``."""
+        (c, x), (first, last) = self._phase, self.full_rate
+        powers = rate ** np.arange(len(c) - 1, -1, -1)[:, None]
+        result = copy(self)
+        result.full_rate = time + (first - begin) / rate, time + (last - begin) / rate
+        result._set_phase(PPoly(c * powers, time + (x - begin) / rate))
+        return result
 
     def _brakes(self, time: float, duration: float) -> bool:
         phase = self._braked(time, duration)

@@ -41,6 +41,11 @@ class Limits(SettingsTable):
         """Return the limits by order of derivative (5,)."""
         return np.array([self.speed, self.acceleration, self.jerk, self.snap, self.crackle])
 
+    def stopping_time(self, speed: float) -> float:
+        """Return the time of a stop along a line from ``speed`` (m/s) (s); half of it at that speed is its way."""
+        a, j, s, c = self.acceleration, self.jerk, self.snap, self.crackle
+        return speed / a + a / j + j / s + s / c
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class AvoidanceSettings(SettingsTable):

@@ -13,6 +13,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import BSpline, PPoly, make_interp_spline
+from scipy.special import binom
 
 from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
@@ -109,6 +110,27 @@ class SplineTrajectory(Trajectory):
         last = max(0, math.floor((finite(time, "time") - self.origin) / self.interval))
         points = _slowed_to_rest(self.control_points, last, self.interval, self.limits)
         return SplineTrajectory(points, self.interval, self.origin, self.limits)
+
+    def scaled(self, begin: float, rate: float, time: float) -> SplineTrajectory:
+        """See ``Trajectory.scaled``; with control points as dense in the new time, so that it stops as soon."""
+        points, interval, origin = self.control_points, self.interval / rate, time - (begin - self.origin) / rate
+        while interval > self.interval * (1.0 + 1e-9):
+            points, interval, origin = _refined(points), 0.5 * interval, origin - SUPPORT * interval
+        return SplineTrajectory(points, interval, origin, self.limits)
+
+
+def _refined(points: Array) -> Array:
+    """Return the control points of the same spline at half of their interval, the first ``SUPPORT`` intervals before.
+
+    By the two-scale relation of uniform B-splines: a basis function is a binomial mean of those half as wide.
+    """
+    padded = np.vstack([np.repeat(points[:1], SUPPORT, axis=0), points, np.repeat(points[-1:], SUPPORT, axis=0)])
+    spread = np.zeros((2 * len(padded), 3))
+    spread[::2] = padded
+    weights = binom(SUPPORT, np.arange(SUPPORT + 1)) / 2.0**DEGREE
+    refined = np.stack([np.convolve(axis, weights)[: len(spread)] for axis in spread.T], axis=1)
+    refined[:SUPPORT] = points[0]  # of which not all that act are in the padding
+    return refined
 
 
 def _slowed_to_rest(points: Array, last: int, interval: float, limits: Limits) -> Array:

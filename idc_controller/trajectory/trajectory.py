@@ -79,6 +79,10 @@ class Trajectory(ABC):
         It leaves this one continuously up to snap and never comes to rest later than this one would.
         """
 
+    @abstractmethod
+    def scaled(self, begin: float, rate: float, time: float) -> Trajectory:
+        """Return it in another time, to be stopped: from ``begin`` (s) on, which becomes ``time``, ``rate`` as fast."""
+
     def waypoints(self, begin: float, end: float) -> Array:
         """Return the positions (M, 3), m, NED, at which it passes its waypoints between two times (s)."""
         return np.empty((0, 3))
@@ -116,6 +120,10 @@ class RestTrajectory(Trajectory):
     def stop(self, time: float) -> Trajectory:
         """Return the same rest, which ends at ``time`` (s) if it would not have ended before."""
         return RestTrajectory(self._position, self.start, min(self._end, max(self.start, time)))
+
+    def scaled(self, begin: float, rate: float, time: float) -> Trajectory:
+        """See ``Trajectory.scaled``."""
+        return RestTrajectory(self._position, time)
 
 
 class SequenceTrajectory(Trajectory):
@@ -176,6 +184,11 @@ class SequenceTrajectory(Trajectory):
         if time < self._first.end:
             return self._first.stop(time)
         return SequenceTrajectory(self._first, lambda _end, _position: self._next().stop(time))
+
+    def scaled(self, begin: float, rate: float, time: float) -> Trajectory:
+        """See ``Trajectory.scaled``; only of the part that is in force at ``begin``."""
+        self.derivatives([begin], 0)
+        return (self._first if begin < self._first.end else self._next()).scaled(begin, rate, time)
 
     def _next(self) -> Trajectory:
         if self._second is None:

@@ -6,7 +6,7 @@ allowed. What is planned always ends at rest at the last waypoint read, so a lon
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 
@@ -77,15 +77,19 @@ class WaypointTrajectory(Trajectory):
         self._arrival = self._hold = 0.0
         self._open: list[_Corner] = []
         self._passages: list[float] = []
+        self._planned_passages: list[float] | None = None
+        """:attr:`passages`; None: not computed since the last piece was planned."""
 
     @property
-    def passages(self) -> list[float]:
+    def passages(self) -> Sequence[float]:
         """Time (s) of every waypoint planned so far, in order.
 
         Without hold the time at which it is closest; with hold the time at which the hold begins.
         """
-        times = [self._passage(corner) for corner in self._open if corner.mark.is_waypoint]
-        return list(accumulate([*self._passages, *times], max))
+        if self._planned_passages is None:
+            times = [self._passage(corner) for corner in self._open if corner.mark.is_waypoint]
+            self._planned_passages = list(accumulate([*self._passages, *times], max))
+        return self._planned_passages
 
     def evaluate(self, times: Times, order: int) -> Array:
         """See ``Trajectory.evaluate``."""
@@ -103,11 +107,18 @@ class WaypointTrajectory(Trajectory):
 
     def stop(self, time: float) -> SplineTrajectory:
         """See ``Trajectory.stop``; at the latest it rests at the last waypoint planned."""
-        # Far enough ahead to slow down in any case.
+        return self._spline(time).stop(time)
+
+    def scaled(self, begin: float, rate: float, time: float) -> SplineTrajectory:
+        """See ``Trajectory.scaled``; at the latest it rests at the last waypoint planned."""
+        return self._spline(begin).scaled(begin, rate, time)
+
+    def _spline(self, time: float) -> SplineTrajectory:
+        """Return what is planned, far enough ahead to slow down from ``time`` (s) on in any case."""
         smoothing = self._path.smoothing
         self._plan_until(finite(time, "time") + 3 * smoothing.reach * smoothing.interval)
         points, origin = self._path.spline()
-        return SplineTrajectory(points, smoothing.interval, origin, self._limits).stop(time)
+        return SplineTrajectory(points, smoothing.interval, origin, self._limits)
 
     # Planning
 
@@ -115,6 +126,7 @@ class WaypointTrajectory(Trajectory):
         interval = self._path.smoothing.interval
         while math.isinf(self._end) and self.start + (self._arrival + self._hold) - interval <= time:
             piece = next(self._pieces, None)
+            self._planned_passages = None
             if piece is None:
                 self._end = self._resting_time()
             elif piece.path.length == 0.0:

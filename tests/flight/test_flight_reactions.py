@@ -31,7 +31,10 @@ class Watched(Flight):
         self.commands = []
         team = SimpleNamespace(links=(), command_all=lambda *command: self.commands.append(command))
         control = SimpleNamespace(
-            estimator=None, links=None, controller=SimpleNamespace(parameters=PARAMETERS, guidance=Guidance())
+            estimator=None,
+            links=None,
+            resting_place=None,
+            controller=SimpleNamespace(parameters=PARAMETERS, guidance=Guidance()),
         )
         super().__init__(MISSION, team, control, AlarmLog(), stack.obstacle_map(MISSION))
         self.phase = phase

@@ -116,5 +116,5 @@ def test_mission_is_taken_flight_by_flight(tmp_path):
 def test_curve_is_flown_once():
     legs = MissionLegs.of(read_mission("figure_eight"))
     assert legs.takes_off and not legs.ended
-    legs.flight()  # of which a curve reads nothing
+    assert [type(leg).__name__ for leg in legs.flight()] == ["TakeOff", "Curve"]
     assert legs.ended and not legs.takes_off

@@ -79,7 +79,7 @@ def test_deflected_payload_is_stopped_ahead_of_where_it_is(guidance):
     rest, progress = guidance.stopping_trajectory(8.0, mission)
     position, velocity = tracked.derivatives(np.array([8.0]), 1)[:, 0]
     assert velocity[0] == pytest.approx(SPEED) and progress == rest.start == 8.0
-    ahead = position + 0.5 * guidance.settings.stopping_time * velocity
+    ahead = position + 0.5 * guidance.navigator.settings.limits.stopping_time(SPEED) * velocity
     assert rest.position(8.0) == pytest.approx(ahead) == rest.position(100.0)
 
 
@@ -87,10 +87,24 @@ def test_held_up_payload_is_stopped_ahead_of_where_it_is(guidance):
     mission = tracked = straight(40.0, SPEED)
     for k in range(40):
         guidance.reference(5.0 + STEP * k, mission)
-        guidance.observe(tracked, 10.0, None, None)
+        guidance.observe(tracked, 10.0, np.zeros((len(guidance._stages), 5, 3)), None)
     assert guidance.rate < 1.0
     rest, _ = guidance.stopping_trajectory(7.0, mission)
     assert isinstance(rest, RestTrajectory)
+
+
+def test_slow_mission_is_stopped_from_the_speed_and_place_that_it_has(guidance):
+    mission = tracked = straight(40.0, SPEED)
+    guidance.speed_limit = 0.5 * SPEED
+    for k in range(40):
+        reference = guidance.reference(5.0 + STEP * k, mission)
+        guidance.observe(tracked, 0.0, None, None)
+    assert reference.rate == pytest.approx(0.5)
+    time = reference.start + 0.5 * STEP
+    followed, progress = guidance.stopping_trajectory(time, mission)
+    stop = followed.stop(progress)
+    assert stop.derivatives([progress])[:, 0] == pytest.approx(reference.derivatives(np.array([time]))[:, 0], abs=1e-9)
+    assert 0.0 < stop.position(stop.end)[0] - stop.position(progress)[0] < SPEED
 
 
 @pytest.mark.parametrize(("share", "rate"), [(0.0, 1.0), (0.45, 1.0), (0.75, 0.5), (1.0, 0.0), (3.0, 0.0)])

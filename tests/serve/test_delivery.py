@@ -11,6 +11,7 @@ import pytest
 from mission_ground import placeless
 from team_bench import TeamBench, Truth, reposition, set_mode, team_command
 from team_session import ARM, DISARM, LAND, RETURN, START, at, change_speed, take_off
+from vehicle_bench import GROUND
 
 from gcs.flight.phase import Phase
 from gcs.mavlink import px4
@@ -105,6 +106,13 @@ def test_items_are_reached_and_current_in_order_also_on_the_ground(flown: Delive
     assert changes(flown.team, "MISSION_CURRENT", lambda found: found.seq) == [*range(len(DELIVERY))]
 
 
+def test_landing_is_reached_at_touchdown(flown: Delivery) -> None:
+    inbox = flown.team.inbox[GROUND]
+    reached = [found.get_type() == "MISSION_ITEM_REACHED" and found.seq == 1 for found in inbox].index(True)
+    height = [-found.z for found in inbox[:reached] if found.get_type() == "LOCAL_POSITION_NED"][-1]
+    assert height < 0.35, "the height above the place is 1 m"
+
+
 def test_team_is_disarmed_and_on_the_ground_at_the_stop(flown: Delivery) -> None:
     armed = changes(flown.team, "HEARTBEAT", lambda found: bool(found.base_mode & m.MAV_MODE_FLAG_SAFETY_ARMED))
     assert armed == [False, True, False, True, False]
@@ -120,7 +128,7 @@ def test_order_at_the_stop_is_refused_with_the_reason(flown: Delivery, name: str
     assert flown.answers[name][0] == result and flown.answers[name][1].startswith(reason)
 
 
-def test_mission_is_not_replaced_at_the_stop_and_may_be_told_to_go_on(flown: Delivery) -> None:
+def test_mission_is_not_replaced_at_the_stop_and_may_be_resumed(flown: Delivery) -> None:
     refusal = "Mission refused: the one before is being flown; hold first"
     assert flown.upload_at_stop == (m.MAV_MISSION_ERROR, refusal)
     assert flown.continued == (m.MAV_RESULT_ACCEPTED, "")

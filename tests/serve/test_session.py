@@ -123,6 +123,11 @@ def test_motion_goes_on_without_a_step(flown: Session, step: str) -> None:
     assert np.linalg.norm(np.diff(truth.velocity, axis=0), axis=1).max() < 0.02 * PLANNED + 0.02
 
 
+def test_pause_does_not_fly_past_the_place_where_it_holds(flown: Session) -> None:
+    north = flown.truth("pause").position[:, 0]
+    assert north[-1] - north[0] > 1.0 and north.max() - north[-1] < 0.1
+
+
 def test_another_item_brakes_within_the_limits_of_the_planner(flown: Session) -> None:
     assert flown.truth("again").acceleration.max() < PLANNED + NOISE
 

@@ -123,7 +123,7 @@ class Session:
         bench = self.bench
         self._step("arm", ARM, lambda: bench.until("HEARTBEAT", lambda found: found.base_mode & 128))
         self.first_flight = weakref.ref(bench.server.session.station)
-        self._step("start", START, lambda: bench.until("LOCAL_POSITION_NED", lambda found: found.x > 2.5))
+        self._step("start", START, lambda: bench.until("LOCAL_POSITION_NED", lambda found: found.x > 1.0))
         self._refuse("in flight", REFUSED_IN_FLIGHT)
         self.answers["fence in flight"] = bench.upload([FENCE[0]._replace(param1=9.0)], PlanType.FENCE)
         self.answers["mission in flight"] = bench.upload(MISSION[:3], PlanType.MISSION)

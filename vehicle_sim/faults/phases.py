@@ -14,11 +14,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from gcs.mission.model import Mission
-from gcs.mission.route import Leg
 from idc_controller.arrays import Array
 
 if TYPE_CHECKING:
-    from gcs.flight.mission_legs import MissionLegs
+    from gcs.flight.mission_legs import MissionLeg, MissionLegs
     from gcs.flight.mission_trajectory import MissionTrajectory
 
 _PLANNED = frozenset({"climb", "fly", "hold", "land"})
@@ -51,7 +50,7 @@ class PhaseObserver:
         self._driven: set[int] = set()
         self._risen = False
         self._legs: MissionLegs | None = None
-        self._flown: Iterator[Leg] = iter(())
+        self._flown: Iterator[MissionLeg] = iter(())
         self._flight, self._over = 1, False
 
     @property
