@@ -54,6 +54,7 @@ class NavigationSettings(SettingsTable):
     rates_sigmas: float = 6.7
     rates_error: float = 0.01  # rad; by which they may miss it without noise: the samples are integrated one by one
     rates_refused: float = 2.0  # s; for which rates that miss it are not used
+    alignment_time: float = 0.5  # s; time constant with which the inertial attitude is aligned with the measured one
 
 
 @dataclass(frozen=True, eq=False, repr=False)

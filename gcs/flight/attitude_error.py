@@ -46,20 +46,20 @@ def _own_deviation(estimate: Estimate, uav: int, direction: Array) -> float:
 
 
 def attitude_misaligned(system: System, moment: Moment) -> Trigger | None:
-    """Return the vehicle on the pad whose attitude is not the payload's, as its cradle holds it.
+    """Return the vehicle on the ground whose attitude is wrong.
 
     Taken off with a wrong attitude it would fall aside with its link, until that is compensated.
     """
-    on_pad = moment.phase in (Phase.CHECK, Phase.ARM, Phase.SPOOL_UP) and not system.preflight.landed
-    if not on_pad:  # where it has landed, links lean as they came to rest
+    if moment.phase not in (Phase.CHECK, Phase.ARM, Phase.SPOOL_UP):
         return None
-    limit = system.settings.pad_attitude_error
+    limit, landed = system.settings.pad_attitude_error, system.preflight.landed
     errors = system.preflight.attitude_errors()
-    if min(errors) > limit:
+    if min(errors) > limit and not landed:
         text = f"the payload unit reports an attitude {min(errors):.2f} rad off every vehicle's (limit {limit:g} rad)"
         return Trigger(text, source="payload")
     for i, error in enumerate(errors):
         if error > limit:
             name = f"vehicle {system.team.links[i].system_id}"
-            return Trigger(f"{name} reports an attitude {error:.2f} rad off the payload's (limit {limit:g} rad)", (i,))
+            right = "that by its rates" if landed else "the payload's"
+            return Trigger(f"{name} reports an attitude {error:.2f} rad off {right} (limit {limit:g} rad)", (i,))
     return None

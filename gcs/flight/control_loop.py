@@ -111,6 +111,12 @@ class ControlLoop:
         """Return the estimate at ``effective`` (s), about ``trajectory``."""
         self.compute_times.lap(Part.MONITORING)
         estimate = self.estimator.estimate(effective, self.controller.reference(trajectory))
+        if steps := self.estimator.new_attitude_steps():
+            for step in steps:
+                self.estimator.take_attitude_step(step)
+                self.controller.load.take_attitude_step(step)
+                self.links.take_attitude_step(step)
+            estimate = self.estimator.estimate(effective, self.controller.reference(trajectory))
         self.compute_times.lap(Part.ESTIMATION)
         return estimate
 

@@ -129,6 +129,8 @@ class Flight:
 
     def add_measurements(self, measurements: Sequence[Measurement]) -> Sequence[Measurement]:
         """Take telemetry of the vehicles and of the payload unit; return what is used of it."""
+        for taken in measurements:
+            self.control.estimator.attitude_steps.add(taken)
         if self.phase in CONTROLLED:
             for taken in measurements:
                 self.system.plan.add(taken)
@@ -139,13 +141,16 @@ class Flight:
                 for taken in used:
                     self.control.add_to_links(taken)
                 if self._in_cradles:
-                    for taken in measurements:
-                        self.system.preflight.add(taken)
+                    self._add_to_preflight(measurements)
             return used
         if self.phase in (Phase.CHECK, Phase.ARM):
-            for taken in measurements:
-                self.system.preflight.add(taken)
+            self._add_to_preflight(measurements)
         return measurements
+
+    def _add_to_preflight(self, measurements: Sequence[Measurement]) -> None:
+        for taken in measurements:
+            self.system.preflight.add(taken)
+        self.system.preflight.attitude_steps = self.control.estimator.attitude_steps.total.copy()
 
     @property
     def _in_cradles(self) -> bool:

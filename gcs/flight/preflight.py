@@ -50,9 +50,17 @@ class Preflight:
         self._positions: dict[int, list[Array]] = {source: [] for source in (PAYLOAD, *range(len(team.links)))}
         self._axes: dict[int, list[Array]] = {source: [] for source in self._positions}
         """Level parts (2,) of the newest attitudes' downward axes of each source."""
+        self.attitude_steps = np.zeros((len(team.links), 2))
+        """What the attitude of each vehicle has stepped without rates (N, 2) (rad), to be kept up to date."""
 
     def attitude_errors(self) -> list[float]:
-        """Return the angle between the axes of each vehicle and of the payload unit (N,) (rad); 0: not known yet."""
+        """Return the error of each vehicle's attitude as it stands (N,) (rad); 0: not known yet.
+
+        On the pad it is the angle between its axis and the payload unit's. Where it has landed, its link leans as it
+        came to rest: there it is what its attitude has stepped without rates, in all flights.
+        """
+        if self.landed:
+            return [float(np.linalg.norm(step)) for step in self.attitude_steps]
         payload, *vehicles = (self._axes[source] for source in (PAYLOAD, *range(len(self._team.links))))
         if len(payload) < _ATTITUDES:
             return [0.0] * len(vehicles)

@@ -7,6 +7,7 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.control.force_kernels import followed
 from idc_controller.control.settings import ControllerSettings
+from idc_controller.estimation.health.attitude_steps import AttitudeStep
 from idc_controller.estimation.measurements import Estimate
 from idc_controller.estimation.wind import WindEstimator
 from idc_controller.model.drag import Air
@@ -42,6 +43,14 @@ class LoadAdaptation:
         mass = min(max(mass, least * self.parameters.m_0), most * self.parameters.m_0)
         load = self.estimate
         self.estimate = Load(mass, load.force * np.array([1.0, 1.0, 0.0]), load.uav_force, load.air)
+
+    def take_attitude_step(self, step: AttitudeStep) -> None:
+        """Take the force of a UAV whose thrust is off its attitude by a ``step``, at once."""
+        load, i = self.estimate, step.uav
+        uav_force = load.uav_force.copy()
+        uav_force[i, :2] -= self.parameters.hover_thrust[i] * step.angle
+        uav_force[i] *= self._uav_limit / max(float(np.linalg.norm(uav_force[i])), self._uav_limit)
+        self.estimate = Load(load.mass, load.force, uav_force, load.air)
 
     def start(self) -> None:
         """Lean against the wind of the flight before: at lift-off nothing else holds the payload any more."""

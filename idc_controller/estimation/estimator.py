@@ -9,12 +9,14 @@ payload's mass are estimated along with the state, so that none of them leaves a
 import bisect
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
 
 from idc_controller.arrays import Array
+from idc_controller.estimation.health.attitude_steps import AttitudeStep, AttitudeSteps
 from idc_controller.estimation.health.sensor_health import HealthSnapshot, SensorHealth
 from idc_controller.estimation.measurement_model import MeasurementModel
 from idc_controller.estimation.measurement_update import MeasurementUpdate, Moment
@@ -130,11 +132,17 @@ class Estimator:
         self.settings = s = settings
         self.measurement_model = MeasurementModel(model, noise, s.measurement)
         self.health = SensorHealth(number_of_uavs, noise, s)
+        self.attitude_steps = AttitudeSteps(model.parameters, noise, s.attitude_steps)
+        """Compares attitudes with body rates, also before the start."""
         self._process = ProcessModel(model, s.process)
         self._nominal_mass = model.parameters.m_0
         self._filter = ErrorStateFilter(self._process)
         self._update = MeasurementUpdate(self.measurement_model, self.health, s)
         self._replay = ReplayBuffer(s.history, s.simultaneous)
+        self._steps: list[AttitudeStep] = []
+        """Within the filter's memory."""
+        self._directions: dict[float, tuple[Array, Array]] = {}
+        """n' of the UAVs (2 N,) at each moment, predicted and corrected."""
         self.setpoints = SetpointHistory(number_of_uavs, s.setpoints)
         """Set-points in force; their confirmations go by :meth:`confirm_setpoint`."""
 
@@ -209,6 +217,23 @@ class Estimator:
         usable = self.health.received(measurement)
         return usable if usable is not None and self._replay.add(usable) else None
 
+    def new_attitude_steps(self) -> list[AttitudeStep]:
+        """Return the steps that vehicles fly by, as found since the last time; call it after an estimate."""
+        return self.attitude_steps.confirmed(self._explained)
+
+    def _explained(self, uav: int, since: float, until: float) -> Array:
+        """Return the change of n' (2,) (1/s) of a UAV between two times (s) that the filter has predicted."""
+        gap = self.settings.simultaneous
+        times = sorted(t for t in self._directions if since - gap <= t <= until + gap)
+        part = slice(2 * uav, 2 * uav + 2)
+        changes = [self._directions[b][0][part] - self._directions[a][1][part] for a, b in pairwise(times)]
+        return np.sum(changes, axis=0) if changes else np.zeros(2)
+
+    def take_attitude_step(self, step: AttitudeStep) -> None:
+        """Take a ``step`` of a UAV's attitude, by which its thrust is off its attitude from then on."""
+        self._steps.append(step)
+        self._replay.rewind(step.time - self.settings.simultaneous)
+
     def hold_payload(self, time: float, position: Array, yaw: float) -> None:
         """Take the payload to stand at ``time`` (s) where its unit's telemetry has timed out.
 
@@ -234,7 +259,10 @@ class Estimator:
             if group not in self.health.isolated_groups:
                 self._isolate(group, time, reference)
         estimate = self._advance(time, reference)
-        self.setpoints.forget(self._replay.forget())
+        oldest = self._replay.forget()
+        self.setpoints.forget(oldest)
+        self._steps = [step for step in self._steps if step.time > oldest]
+        self._directions = {time: value for time, value in self._directions.items() if time > oldest}
         return estimate
 
     def _isolate(self, group: SensorGroup, time: float, reference: Reference) -> None:
@@ -275,7 +303,12 @@ class Estimator:
                 kf.advance(interval, k, health.adaptation.process_scale)
                 k += 1
                 continue
+            for step in self._steps:
+                if abs(step.time - moment.time) <= self.settings.simultaneous:
+                    kf.move(*process.attitude_step(step))
+            predicted = kf.state(k)[process.layout.n_dot]
             record = self._update.apply(kf, moment, interval.flat, k, adapt)
+            self._directions[moment.time] = predicted, kf.state(k)[process.layout.n_dot]
             if record is not None:
                 innovations.append(record)
             self._replay.snapshots.append(Snapshot(moment.time, kf.state(k), kf.P, health.snapshot()))

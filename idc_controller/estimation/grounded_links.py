@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idc_controller.arrays import Array, Mask
+from idc_controller.estimation.health.attitude_steps import AttitudeStep
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise
 from idc_controller.estimation.settings import GroundedLinksSettings
 from idc_controller.parameters import SystemParameters
@@ -117,7 +118,9 @@ class GroundedLinks:
         self._located = np.zeros(number)
         """Time of the last position of each UAV (s)."""
         self._common, self._own = np.zeros(2), np.zeros((number, 2))
-        """Median of b (2,), and what each UAV has beside it (N, 2), low-passed."""
+        """What all have of b (2,), and what each UAV has beside it (N, 2), low-passed."""
+        self._offsets = np.zeros((number, 2))
+        """What each UAV had beside it in the air (N, 2), and what its attitude has stepped since."""
         self._payload = _Payload(0.0, np.zeros(12), s)
         self._commands: deque[_Command] = deque()
 
@@ -139,6 +142,7 @@ class GroundedLinks:
         self._located[[*unlocated]] = -math.inf
         self._common = np.median(x[OFF], axis=0)
         self._own = x[OFF] - self._common
+        self._offsets = self._own.copy()
         self._x[:] = x.transpose(1, 0, 2)
         self._P[:] = np.diag(self._initial)
         self._drag = drag
@@ -158,7 +162,9 @@ class GroundedLinks:
         if not located.any():
             return
         share = 1.0 - math.exp(-step / s.error_time_constant)
-        self._common = self._common + share * (np.median(errors[located], axis=0) - self._common)
+        # Without offsets: the median of a few of which one is far off is not in the middle of the others.
+        common = np.median(errors[located] - self._offsets[located], axis=0)
+        self._common = self._common + share * (common - self._common)
         self._own[located] += share * (errors[located] - self._common - self._own[located])
         errors[~located] = self._own[~located] + self._common
 
@@ -183,6 +189,12 @@ class GroundedLinks:
             self._update(i, S, (position - measurement.pose)[:2] / p.l[i], self._variance[0] / p.l[i] ** 2)
         if measurement.has_motion:
             self._update(i, S_DOT, (velocity - measurement.motion)[:2] / p.l[i], self._variance[1] / p.l[i] ** 2)
+
+    def take_attitude_step(self, step: AttitudeStep) -> None:
+        """Take a ``step`` of a UAV's attitude, by which its thrust is off its attitude from now on."""
+        self._x[step.uav, OFF] -= step.angle
+        self._own[step.uav] -= step.angle
+        self._offsets[step.uav] -= step.angle
 
     @property
     def _is_located(self) -> Mask:

@@ -6,6 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.estimation.health.attitude_steps import AttitudeStep, step_response
 from idc_controller.estimation.kalman_filter import SparseRows, Transition
 from idc_controller.estimation.propagation_kernels import add_variances
 from idc_controller.estimation.settings import CovarianceResetSettings, InitialCovarianceSettings, ProcessNoiseSettings
@@ -102,6 +103,23 @@ class ProcessModel:
         added[layout.s_dot] = settings.link_rate**2
         added[force] = np.maximum(settings.force**2 - np.diag(P)[force], 0.0)
         return np.diag(added)
+
+    def attitude_step(self, step: AttitudeStep) -> tuple[Array, Array]:
+        """Return what a ``step`` adds to the state (n,) and to its covariance (n, n) at its first sample.
+
+        The UAV's attitude is off by it, its thrust is not: that is a force of its own. Since a moment in the interval
+        before the sample it turns against the step.
+        """
+        p, layout, i, size = self.model.parameters, self.layout, step.uav, float(np.linalg.norm(step.angle))
+        _, rate, acceleration = step_response(p, 0.5 * step.interval)
+        _, rate_range, acceleration_range = 0.5 * size * step_response(p, step.interval)
+        moved, covariance = np.zeros((2, self.size)), np.zeros((self.size, self.size))
+        for axis in (0, 1):
+            n, n_dot, n_acc = (part.start + 2 * i + axis for part in (layout.n, layout.n_dot, layout.n_acc))
+            force = self.uav_force.start + 2 * i + axis
+            moved[axis, [n, n_dot, n_acc, force]] = 1.0, rate, acceleration, -p.hover_thrust[i]
+            covariance[n_dot, n_dot], covariance[n_acc, n_acc] = rate_range**2, acceleration_range**2
+        return step.angle @ moved, covariance + step.deviation**2 * moved.T @ moved
 
     def uav_forces(self, common: float, own: float) -> Array:
         """Return the covariance (2 N, 2 N) of level forces on the UAVs.

@@ -120,6 +120,10 @@ class ErrorStateFilter(StructuredKalmanFilter):
         """Begin anew from the reference with covariance ``P`` (n, n)."""
         self.x, self.P = np.zeros(self.process.size), P
 
+    def move(self, change: Array, added: Array) -> None:
+        """Add a ``change`` (n,) to the state and ``added`` (n, n) to its covariance."""
+        self.x, self.P = self.x + change, self.P + added
+
     def inflate(self, added: Array) -> None:
         """Add ``added`` (n, n) to the covariance."""
         self.P = self.P + added

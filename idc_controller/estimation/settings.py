@@ -223,6 +223,20 @@ class GroundedLinksSettings(SettingsTable):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class AttitudeStepSettings(SettingsTable):
+    """Steps of a UAV's attitude that its body rates do not explain."""
+
+    false_alarm: Share = 1e-9  # probability per sample of a step of a nominal sensor
+    turn_error: float = 0.01  # rad; of the turn by the rates of two samples
+    noise_memory: float = 0.5  # s; over which the noise of the attitudes is followed
+    persistent_share: Share = 0.5  # of a step that is left with the next sample: else it was that of one sample
+    gap: float = 0.13  # s; between two samples that are compared
+    response_min: Share = 0.5  # share of the attitude loop's rate with which a vehicle turns against a step on board
+    response_max: float = 2.0  # the same; a blow turns it faster
+    response_time: float = 0.1  # s; after a step, in which it must
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class EstimatorSettings(SettingsTable):
     """All settings of the estimator, by part."""
 
@@ -240,6 +254,7 @@ class EstimatorSettings(SettingsTable):
     isolation: ChannelIsolationSettings = field(default_factory=ChannelIsolationSettings)
     dead_reckoning: DeadReckoningSettings = field(default_factory=DeadReckoningSettings)
     adaptation: NoiseAdaptationSettings = field(default_factory=NoiseAdaptationSettings)
+    attitude_steps: AttitudeStepSettings = field(default_factory=AttitudeStepSettings)
     setpoints: SetpointHistorySettings = field(default_factory=SetpointHistorySettings)
     grounded_links: GroundedLinksSettings = field(default_factory=GroundedLinksSettings)
 

@@ -76,6 +76,20 @@ def test_slope_of_the_pad_is_no_wrong_attitude_and_a_wrong_payload_unit_is_named
     assert pad(0.0, 0.0, 0.0, 0.0, payload=0.1).source == "payload"
 
 
+def test_vehicle_whose_attitude_has_stepped_without_rates_does_not_take_off_from_where_it_has_landed():
+    links = [SimpleNamespace(system_id=i + 1) for i in range(4)]
+    team = SimpleNamespace(links=links)
+    preflight = Preflight(team)
+    preflight.restart(landed=True)
+    system = SimpleNamespace(preflight=preflight, team=team, settings=SystemConfig().flight.failsafe)
+    moment = Moment(Phase.CHECK, 1.0, 1.0)
+    preflight.add(Attitude(0.0, 1, quaternion_from_euler(0.1, 0.0, 0.0), np.zeros(3)))  # as its link leans
+    assert attitude_misaligned(system, moment) is None
+    preflight.attitude_steps[2] = 0.1, -0.1
+    found = attitude_misaligned(system, moment)
+    assert found.vehicles == (2,) and "vehicle 3 reports an attitude 0.14 rad off that by its rates" in found.reason
+
+
 @pytest.mark.parametrize(("error", "clear"), [(0.0, True), (0.06, True), (0.2, False)])
 def test_wind_and_small_errors_are_no_failsafe_nor_is_anything_on_the_ground(error, clear):
     assert trigger(aside(error), clear) is None

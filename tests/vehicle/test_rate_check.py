@@ -7,7 +7,7 @@ import pytest
 from flying import AIRFRAME
 
 from gcs.config.vehicle_settings import LandDetectorSettings, NavigationSettings
-from idc_controller.rotations_float import turned
+from idc_controller.rotations_float import half_rotation, turned
 from vehicle_sim.autopilot.navigation import Navigation
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.autopilot.onboard_kernels import take_fresh_samples
@@ -25,21 +25,21 @@ class Flown:
         self.arrays = OnboardArrays.of([AIRFRAME], LandDetectorSettings(), ATTITUDE_NOISE)
         self.navigation = Navigation(0.05, AIRFRAME.g, NavigationSettings(), self.arrays)
         self._random, self._amplitude = np.random.default_rng(seed), amplitude
-        self._attitude, self.time, self.rates = (1.0, 0.0, 0.0, 0.0), 0.0, (0.0, 0.0, 0.0)
+        self.attitude, self.time, self.rates = (1.0, 0.0, 0.0, 0.0), 0.0, (0.0, 0.0, 0.0)
 
-    def run(self, duration, wrong=lambda rates: rates):
+    def run(self, duration, wrong=lambda rates: rates, step=(0.0, 0.0, 0.0), located=True):
         """Return the largest error of the rates that are flown by (rad/s), and the share of samples that were fresh."""
         errors, fresh = [], []
         for _ in range(round(duration / STEP)):
             self.time += STEP
             swing = self._amplitude * math.sin(4.0 * self.time)
             self.rates = (swing, -0.6 * swing, 0.2 * swing)
-            self._attitude = turned(self._attitude, self.rates, STEP)
+            self.attitude = turned(self.attitude, self.rates, STEP)
             off = self._random.normal(0.0, ATTITUDE_NOISE, 3)
             rates = wrong(np.array(self.rates)) + self._random.normal(0.0, RATE_NOISE, 3)
             row = np.zeros((1, STATE_COLUMNS))
-            row[0, 3:7], row[0, 10:13] = turned(self._attitude, tuple(off), 1.0), rates
-            row[0, :3] = self._random.normal(0.0, 0.02, 3)
+            row[0, 3:7], row[0, 10:13] = turned(turned(self.attitude, step, 1.0), tuple(off), 1.0), rates
+            row[0, :3] = self._random.normal(0.0, 0.02, 3) if located else self.arrays.last_samples[0, :3]
             a = self.arrays
             times = np.array([self.time])
             take_fresh_samples(row, times, self.time, a.last_samples, a.estimates, a.stamps, a.fresh, a.rate_checks)
@@ -74,3 +74,30 @@ def test_rates_that_are_right_again_are_used_again():
     flown.run(NavigationSettings().rates_refused + 0.2)
     error, fresh = flown.run(2.0)
     assert fresh == 1.0 and error < 6.0 * RATE_NOISE
+
+
+STEP_OF_ATTITUDE = (0.1, 0.1, 0.1)
+
+
+def test_step_of_the_attitude_is_no_error_of_the_rates():
+    flown = Flown()
+    flown.run(1.0)
+    error, fresh = flown.run(2.0, step=STEP_OF_ATTITUDE)
+    assert fresh == 1.0 and error < 6.0 * RATE_NOISE
+    error, fresh = flown.run(2.0)
+    assert fresh == 1.0 and error < 6.0 * RATE_NOISE
+
+
+def error_without_position(**step):
+    """Return the error (rad) of the attitude after 10 s without a position, with a ``step`` since shortly before."""
+    flown = Flown()
+    flown.navigation.specific_force = (0.0, 0.0, -AIRFRAME.g)
+    flown.run(2.0)
+    flown.run(0.2, **step)
+    flown.run(10.0, located=False, **step)
+    return 2.0 * math.hypot(*half_rotation(flown.attitude, flown.navigation.estimate.attitude))
+
+
+def test_vehicle_without_position_goes_on_by_its_rates_where_its_attitude_has_stepped():
+    assert error_without_position() < 0.005
+    assert error_without_position(step=STEP_OF_ATTITUDE) < 0.01

@@ -4,9 +4,10 @@ import math
 
 from gcs.config.vehicle_settings import NavigationSettings
 from idc_controller.rotations_float import Quaternion, Vector, half_rotation, turned
+from vehicle_sim.autopilot.attitude_check_kernels import CHECKED_AT, INERTIAL, REFUSED_UNTIL
 from vehicle_sim.autopilot.inertial import accelerated
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
-from vehicle_sim.autopilot.onboard_kernels import FRESH_AT, REFUSED_UNTIL, SAMPLE_TIME, THRUST, WEIGHT
+from vehicle_sim.autopilot.onboard_kernels import FRESH_AT, SAMPLE_TIME, THRUST, WEIGHT
 from vehicle_sim.world.sensors import ACCELEROMETER_RANGE, Measurement, is_rotation
 
 
@@ -14,8 +15,9 @@ class Navigation:
     """Takes the sensors' samples, and for a sensor that is stuck or gives no numbers, an estimate from the others.
 
     The attitude then goes on with the rates; the rates are those that explain the attitude and the torque, by an
-    observer of second order; position and velocity go on with the specific force (inertial dead reckoning). A vehicle
-    needs its rates hundreds of times a second: with old ones it turns over.
+    observer of second order; position and velocity go on with the specific force (inertial dead reckoning), and the
+    attitude then with the body rates, aligned with the measured one but for a step of that. A vehicle needs its rates
+    hundreds of times a second: with old ones it turns over.
 
     Fresh samples are taken with those of the whole team, in :func:`.onboard_kernels.take_fresh_samples`; the others
     come to :meth:`update`.
@@ -124,6 +126,10 @@ class Navigation:
         if has_rates or not has_attitude:
             self._observed = None
         attitude = sample.attitude if has_attitude else turned(known.attitude, rates, step)
+        check = self.arrays.rate_checks[0]
+        if has_rates and has_attitude and not has_position and check.item(CHECKED_AT) == time:
+            w, x, y, z = check[INERTIAL : INERTIAL + 4].tolist()
+            attitude = w, x, y, z
         if has_position or self.specific_force is None:
             position = sample.position if has_position else known.position
             velocity = sample.velocity if _are_numbers(sample.velocity) else known.velocity

@@ -10,6 +10,13 @@ import numpy as np
 from gcs.config.vehicle_settings import LandDetectorSettings, NavigationSettings
 from idc_controller.arrays import Array, Mask
 from vehicle_sim.autopilot.airframe import Airframe
+from vehicle_sim.autopilot.attitude_check_kernels import (
+    ALIGNMENT_TIME,
+    RATE_CHECK_COLUMNS,
+    RATES_ERROR_MAX,
+    RATES_REFUSED,
+    RATES_WINDOW,
+)
 from vehicle_sim.autopilot.onboard_kernels import (
     IN_AIR,
     LANDING_COLUMNS,
@@ -17,10 +24,6 @@ from vehicle_sim.autopilot.onboard_kernels import (
     LIFT,
     LIFTED_AT,
     RATE,
-    RATE_CHECK_COLUMNS,
-    RATES_ERROR_MAX,
-    RATES_REFUSED,
-    RATES_WINDOW,
     STAMP_COLUMNS,
     STANDING_SINCE,
     TARGET_COLUMNS,
@@ -59,7 +62,7 @@ class OnboardArrays:
     idle_until: Array
     """Times (N,) (s) before which the vehicles have nothing to decide; -inf: they have at the next step."""
     rate_checks: Array
-    """Comparison of body rates with the attitude (N, 10)."""
+    """Comparison of body rates with the attitude (N, 17)."""
 
     @classmethod
     def of(
@@ -79,6 +82,7 @@ class OnboardArrays:
         of_two = 2.0**0.5 * attitude_noise
         rate_checks[:, RATES_ERROR_MAX] = max(navigation.rates_sigmas * of_two, navigation.rates_error)
         rate_checks[:, [RATES_WINDOW, RATES_REFUSED]] = navigation.rates_window, navigation.rates_refused
+        rate_checks[:, ALIGNMENT_TIME] = navigation.alignment_time
         landings = np.full((n, LANDING_COLUMNS), np.nan)
         landings[:, [VELOCITY, RATE, LIFT, LAST_TIME, IN_AIR]] = 0.0
         landings[:, LIFTED_AT] = -np.inf

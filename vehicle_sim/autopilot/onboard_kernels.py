@@ -10,6 +10,7 @@ from idc_controller import rotations_float
 from idc_controller.arrays import Array, Array1, Array2, Mask1
 from idc_controller.compiled import inlined, kernel
 from idc_controller.rotations_float import Quaternion, Vector
+from vehicle_sim.autopilot.attitude_check_kernels import REFUSED_UNTIL, compare
 from vehicle_sim.world.rotors import Four
 from vehicle_sim.world.sensors import NORM_ERROR_MAX
 
@@ -39,11 +40,6 @@ LANDING_COLUMNS = 13
 # Columns of ``stamps``: the time of the last fresh sample, and when it came (s); -inf: there has been none.
 SAMPLE_TIME, FRESH_AT = 0, 1
 STAMP_COLUMNS = 2
-
-# Columns of ``rate_checks``: the attitude that the rates lead to (4), since when, and the last sample's time (s); until
-# when rates are refused (s); how far the attitude may be from theirs (rad); window and duration of a refusal (s).
-CHECKED_SINCE, CHECKED_AT, REFUSED_UNTIL, RATES_ERROR_MAX, RATES_WINDOW, RATES_REFUSED = 4, 5, 6, 7, 8, 9
-RATE_CHECK_COLUMNS = 10
 
 # How far a step has come: samples taken and not all fresh, landings detected and not all idle, rotor speeds commanded.
 SAMPLED, DETECTED, COMMANDED = 0, 1, 2
@@ -147,28 +143,6 @@ def control_attitudes(
             speeds[i, k] = math.sqrt(forces[k] * a[PER_K_F]) if forces[k] > 0.0 else 0.0
 
 
-@inlined
-def _check_rates(check: Array, time: float, attitude: Quaternion, rates: Vector) -> None:
-    """Refuse rates for a while where the attitude has not turned by them over the window."""
-    step = time - check[CHECKED_AT]
-    check[CHECKED_AT] = time
-    if not 0.0 < step < check[RATES_WINDOW]:
-        check[CHECKED_SINCE] = time
-        check[0], check[1], check[2], check[3] = attitude
-        return
-    w, x, y, z = check[0], check[1], check[2], check[3]
-    p, q, r = 0.5 * step * rates[0], 0.5 * step * rates[1], 0.5 * step * rates[2]
-    check[0], check[1] = w - x * p - y * q - z * r, x + w * p + y * r - z * q
-    check[2], check[3] = y + w * q + z * p - x * r, z + w * r + x * q - y * p
-    if time - check[CHECKED_SINCE] < check[RATES_WINDOW]:
-        return
-    x, y, z = _half_rotation((check[0], check[1], check[2], check[3]), attitude)
-    if 2.0 * math.sqrt(x * x + y * y + z * z) > check[RATES_ERROR_MAX]:
-        check[REFUSED_UNTIL] = time + check[RATES_REFUSED]
-    check[CHECKED_SINCE] = time
-    check[0], check[1], check[2], check[3] = attitude
-
-
 @kernel
 def take_fresh_samples(
     samples: Array2, times: Array1, now: float, last: Array2, estimates: Array2, stamps: Array2, fresh: Mask1,
@@ -179,7 +153,7 @@ def take_fresh_samples(
     Fresh ones repeat neither position, nor attitude, nor rates of the ``last``. They are the new ``estimates`` (N, 13),
     with ``stamps`` (N, 2): the sample's of ``times`` (N,), and ``now`` (s). For the others :mod:`.navigation` decides:
     sensors repeat themselves by chance, or because they are stuck. Rates of zero are those of a vehicle at rest in a
-    world without noise. Nor is a sample fresh whose rates are refused, by ``rate_checks`` (N, 10). All ``samples`` are
+    world without noise. Nor is a sample fresh whose rates are refused, by ``rate_checks`` (N, 17). All ``samples`` are
     then the ``last``.
     """
     for i in range(samples.shape[0]):
@@ -203,7 +177,8 @@ def take_fresh_samples(
             same_rates = same_rates and s[k] == last[i, k]
             still = still and s[k] == 0.0
         if are_numbers and not same_attitude and (still or not same_rates):
-            _check_rates(rate_checks[i], times[i], (s[3], s[4], s[5], s[6]), (s[10], s[11], s[12]))
+            before = (last[i, 3], last[i, 4], last[i, 5], last[i, 6])
+            compare(rate_checks[i], times[i], before, (s[3], s[4], s[5], s[6]), (s[10], s[11], s[12]))
             fresh[i] = (still or not same_position) and times[i] >= rate_checks[i, REFUSED_UNTIL]
         else:
             fresh[i] = False
