@@ -136,6 +136,8 @@ class Estimator:
         """Compares attitudes with body rates, also before the start."""
         self._process = ProcessModel(model, s.process)
         self._nominal_mass = model.parameters.m_0
+        self._other_mass_since = math.inf
+        """Time since when the learnt mass is another than the model's (s); inf: it is not."""
         self._filter = ErrorStateFilter(self._process)
         self._update = MeasurementUpdate(self.measurement_model, self.health, s)
         self._replay = ReplayBuffer(s.history, s.simultaneous)
@@ -150,6 +152,7 @@ class Estimator:
         """Begin at ``time`` (s) from the state ``x`` (12 + 11 N,) of a team on the ground, under ``load``."""
         self.setpoints.clear()
         self.health.start()
+        self._other_mass_since = math.inf
         self._begin(time, np.concatenate([x, self._process.forces_of(load)]))
 
     def _begin(self, time: float, x: Array) -> None:
@@ -174,14 +177,20 @@ class Estimator:
         self._begin(last.time, x)
 
     def follow_mass(self, mass: float) -> None:
-        """Take a learnt payload ``mass`` (kg) into the model, where that has become another.
+        """Take a learnt payload ``mass`` (kg) into the model, where that has been another for a while. Once a step.
 
-        The links' tension is then that of the model, and with it the motion of payload and UAVs about each other.
+        The links' tension is then that of the model, and with it the motion of payload and UAVs about each other. A
+        blow is learnt as a mass, too, but does not last.
         """
         before = self._process
         nominal, g = before.model.parameters.m_0, before.model.parameters.g
         if abs(mass - nominal) <= self.settings.model_mass_error * nominal:
+            self._other_mass_since = math.inf
             return
+        self._other_mass_since = min(self._other_mass_since, self.time)
+        if self.time - self._other_mass_since < self.settings.model_mass_time:
+            return
+        self._other_mass_since = math.inf
         vertical = before.force.start + 2
         process = self._take_model(mass)
         for k, snapshot in enumerate(self._replay.snapshots):

@@ -245,6 +245,7 @@ class EstimatorSettings(SettingsTable):
     simultaneous: float = 0.002  # s; within which measurements are of one moment
     # share of the payload's mass by which the model's may be wrong: the links' frequency is then wrong by half of it
     model_mass_error: Share = 0.25
+    model_mass_time: float = 1.0  # s; for which it must be: twice the time constant of the learnt load
     payload_timeout: float = 0.3  # s; without the payload unit until a payload on ground is held
     process: ProcessNoiseSettings = field(default_factory=ProcessNoiseSettings)
     initial: InitialCovarianceSettings = field(default_factory=InitialCovarianceSettings)

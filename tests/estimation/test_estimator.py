@@ -255,13 +255,22 @@ def test_setpoint_not_flown_counts_as_lost():
     assert a.x[: LAYOUT.n_acc.start] == pytest.approx(b.x[: LAYOUT.n_acc.start], abs=2e-3)
 
 
-@pytest.mark.parametrize("share", [0.5, 0.9])
-def test_model_takes_a_mass_that_is_learnt_far_from_its_own_and_carries_on_with_the_weight(share):
+@pytest.mark.parametrize(("share", "lasts", "taken"), [(0.5, True, True), (0.9, True, False), (0.5, False, False)])
+def test_model_takes_a_mass_that_is_learnt_far_from_its_own_for_long_and_carries_on_with_the_weight(
+    share, lasts, taken
+):
     estimator, before, _ = run(samples_of(0.5))
+    estimator.follow_mass(share * P.m_0)
+    for moment in samples_of(0.6 + EstimatorSettings().model_mass_time):
+        for measurement in moment:
+            if measurement.time > before.time:
+                estimator.add(measurement)
+    before = estimator.estimate(measurement.time, REFERENCE)
+    if not lasts:
+        estimator.follow_mass(P.m_0)
     estimator.follow_mass(share * P.m_0)
     estimate = estimator.estimate(before.time, REFERENCE)
     weight = [each.mass_excess * P.g + each.force[2] for each in (before, estimate)]
     # What it was off the model's mass is no force any more, and the other way round.
     assert weight[1] == pytest.approx(weight[0], abs=1e-6)
-    taken = abs(1.0 - share) > EstimatorSettings().model_mass_error
     assert bool(estimate.force[2] != before.force[2]) is taken

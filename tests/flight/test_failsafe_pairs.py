@@ -91,7 +91,7 @@ class TrackedFlight(Flight):
         links = SimpleNamespace(at=lambda time: UPRIGHT, command=none)
         control = SimpleNamespace(
             estimator=estimator, controller=controller, estimate=self.on_trajectory, decide=self.decided, send=none,
-            links=links, start_links=none,
+            links=links, start_links=none, resting_place=None,
         )  # fmt: skip
         super().__init__(MISSION, self.team, control, AlarmLog(), stack.obstacle_map(MISSION))
         self.failsafes.evaluate = none
