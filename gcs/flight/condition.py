@@ -8,6 +8,7 @@ from enum import Enum, IntEnum
 from typing import NamedTuple
 
 from gcs.config.flight_settings import DEFAULTS, FailsafeSettings
+from gcs.config.tables import MotionConfig
 from gcs.flight.alarms import Severity
 from gcs.flight.command_sequences import CommandSequence
 from gcs.flight.landing_place import LandingPlace
@@ -100,7 +101,7 @@ class System:
     """None: it is not watched."""
     links: GroundedLinks | None = None
     """Over a payload on the ground; None: not estimated."""
-    landing_speed: float = 0.3
+    landing_speed: float = MotionConfig.landing_speed
     """Of the payload at touch-down (m/s)."""
 
     def obstruction(self, time: float, place: Array, within: float) -> Obstruction | None:

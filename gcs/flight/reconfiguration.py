@@ -20,6 +20,7 @@ def reconfigure(flight: Flight, config: SystemConfig) -> None:
     if flight.mission_trajectory is not None:
         flight.mission_trajectory.set_motion(config.motion)
     margin, control, guidance = config.avoidance.margin, flight.control, flight.system.guidance
+    flight.system.landing_speed = config.motion.landing_speed
     flight.system.kept_clearance = margin + config.safety.planner.tracking
     if isinstance(control.controller.safety, AvoidanceFilter):
         control.controller.safety.set_margin(margin)

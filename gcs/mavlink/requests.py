@@ -109,15 +109,16 @@ class Requests:
             messages += [_PAYLOAD_UNIT_ATTITUDE, _PAYLOAD_UNIT_POSITION]
         if not (self._wanted or self._pending):
             return messages
-        target = self._system_id, px4.AUTOPILOT_COMPONENT
+        target, s = (self._system_id, px4.AUTOPILOT_COMPONENT), self.settings
         for name, due in self._wanted.items():
             if now >= due:
-                self._wanted[name] = now + self.settings.retry_interval
+                self._wanted[name] = now + s.retry_interval
                 messages.append(mavlink.MAVLink_param_request_read_message(*target, name.encode(), -1))
         for command in [*self._pending.values()]:
             if now < command.next_try:
                 continue
-            if command.tries >= self.settings.command_tries:
+            interval = s.mode_interval if command.number == mavlink.MAV_CMD_DO_SET_MODE else s.retry_interval
+            if command.tries * interval >= s.tries * s.retry_interval:
                 command.state = CommandState.UNANSWERED
                 del self._pending[command.number]
                 continue
@@ -125,7 +126,7 @@ class Requests:
                 mavlink.MAVLink_command_long_message(*target, command.number, command.tries, *command.parameters)
             )
             command.tries += 1
-            command.next_try = now + self.settings.command_interval
+            command.next_try = now + interval
         return messages
 
     @property

@@ -28,10 +28,9 @@ class LinkSettings(SettingsTable):
     delays: int = 3  # set-points whose median delay is used: a growing latency must be followed
     stamp_error: float = 0.01  # s; by which a healthy vehicle's stamps may be wrong
     stamp_step_back: float = 1.0  # s; set-point stamps do not follow a clock set back by less; by more: it began anew
-    # s; between repetitions of an unanswered command, about a control period: vehicles that stop must do so together
-    command_interval: float = 0.05
-    command_tries: int = 100
-    retry_interval: float = 0.5  # s; between repetitions of any other request
+    # s; between repetitions of an unanswered mode command, a control period: vehicles that are to hold do so together
+    mode_interval: float = 0.05
+    retry_interval: float = 0.5  # s; between repetitions of any other, longer than a round trip that is flown with
     tries: int = 10  # of it: with a third of all datagrams lost, one in a thousand stays unanswered
     loss_filter: Share = 0.05  # share of one set-point in the running mean of losses
     congestion_lag: float = 0.05  # s; of telemetry: on a congested link copies are not sent

@@ -136,10 +136,12 @@ class TeamSession:
         self.changes += 1
 
     def _open(self, *, recorded: bool) -> None:
-        """Open a flight of the team as the one before has left it: its cargo, and where it stands."""
+        """Open a flight of the team as the one before has left it: its cargo, place, and steps of attitudes."""
         before = self.flight
         self._opened = self._open_flight(self.world, recorded)
         self.flight.cargo = before.cargo
+        steps = self.flight.control.estimator.attitude_steps
+        steps.total[:] = before.control.estimator.attitude_steps.total
         self.flight.system.preflight.landed = before.system.preflight.landed or not math.isnan(before.takeoff_time)
 
     def _wait(self) -> None:

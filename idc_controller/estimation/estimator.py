@@ -240,7 +240,7 @@ class Estimator:
 
     def take_attitude_step(self, step: AttitudeStep) -> None:
         """Take a ``step`` of a UAV's attitude, by which its thrust is off its attitude from then on."""
-        self._steps.append(step)
+        self._steps = sorted([*self._steps, step], key=attrgetter("time"))
         self._replay.rewind(step.time - self.settings.simultaneous)
 
     def hold_payload(self, time: float, position: Array, yaw: float) -> None:
@@ -305,6 +305,8 @@ class Estimator:
         kf.start(last.x, last.P, interval)
         health.restore(last.health)
         innovations = []
+        near = self.settings.simultaneous
+        steps = [step for step in self._steps if step.time - near > last.time]
         moments = iter(pending)
         moment, k = next(moments, None), 0
         while moment is not None:
@@ -312,9 +314,8 @@ class Estimator:
                 kf.advance(interval, k, health.adaptation.process_scale)
                 k += 1
                 continue
-            for step in self._steps:
-                if abs(step.time - moment.time) <= self.settings.simultaneous:
-                    kf.move(*process.attitude_step(step))
+            while steps and steps[0].time - near <= moment.time:
+                kf.move(*process.attitude_step(steps.pop(0)))
             predicted = kf.state(k)[process.layout.n_dot]
             record = self._update.apply(kf, moment, interval.flat, k, adapt)
             self._directions[moment.time] = predicted, kf.state(k)[process.layout.n_dot]

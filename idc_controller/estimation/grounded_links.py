@@ -65,7 +65,7 @@ class _Payload:
     def __init__(self, time: float, x: Array, settings: GroundedLinksSettings) -> None:
         """``x``: position, velocity, Euler angles and body rates (12,) at ``time`` (s)."""
         self._time, self._settings = time, settings
-        self._position, self._velocity = x[:3].copy(), np.zeros(3)
+        self._position, self._velocity, self.velocity = x[:3].copy(), np.zeros(3), np.zeros(3)
         self._turn, self._rates = rotation_from_quaternion(quaternion_from_euler(*x[6:9])), np.zeros(3)
 
     def add(self, measurement: Measurement) -> None:
@@ -76,16 +76,12 @@ class _Payload:
                 self._turn, self._rates = rotation_from_quaternion(measurement.pose), measurement.motion
             return
         if measurement.has_motion:
+            self.velocity = measurement.motion
             self._velocity = np.clip(measurement.motion, -s.payload_speed_max, s.payload_speed_max)
         if measurement.has_pose and measurement.time > self._time:
             predicted = self._position + (measurement.time - self._time) * self._velocity
             off = np.clip(measurement.pose - predicted, -s.payload_step_max, s.payload_step_max)
             self._time, self._position = measurement.time, predicted + s.payload_share * off
-
-    @property
-    def velocity(self) -> Array:
-        """Velocity (3,) (m/s) by its unit, within the largest at which a payload slides."""
-        return self._velocity
 
     def attachment(self, place: Array) -> tuple[Array, Array]:
         """Return position (3,) (m) and velocity (3,) (m/s) of the ``place`` (3,) in its frame."""
@@ -203,7 +199,7 @@ class GroundedLinks:
 
     @property
     def payload_velocity(self) -> Array:
-        """Velocity of the payload (3,) (m/s)."""
+        """Velocity of the payload (3,) (m/s), as its unit measured it last."""
         return self._payload.velocity
 
     def at(self, time: float) -> LinkStates:

@@ -140,7 +140,7 @@ def test_isolation_of_a_channel_takes_as_long_at_any_rate_of_telemetry():
 @pytest.mark.parametrize("tries", [2, 4])
 def test_commands_are_repeated_as_often_and_as_soon_as_the_file_says(tmp_path, tries):
     path = tmp_path / "system.toml"
-    path.write_text(f"[mavlink.link]\ncommand_tries = {tries}\ncommand_interval = 0.2\n")
+    path.write_text(f"[mavlink.link]\ntries = {tries}\nretry_interval = 0.2\n")
     requests = VehicleLink(1, None, read_system(path).mavlink.link).requests
     command = requests.command(400, 1.0)
     sent = [0.05 * k for k in range(40) if requests.due(0.05 * k)]

@@ -58,6 +58,26 @@ def test_spike_of_one_sample_is_no_step():
     assert np.linalg.norm(steps.total[UAV]) < 0.025
 
 
+def test_outlier_of_one_sample_leaves_no_sum_behind():
+    sums = [
+        np.linalg.norm(found(0.06 * ANGLE / np.linalg.norm(ANGLE), lasts=0.04, seed=k)[0].total[UAV]) for k in range(40)
+    ]
+    assert max(sums) < 0.025
+
+
+def test_attitude_that_repeats_itself_while_the_vehicle_turns_is_no_step():
+    steps, rng, stuck = AttitudeSteps(P, NOISE, AttitudeStepSettings()), np.random.default_rng(1), np.zeros(4)
+    for k in range(75):
+        time = PERIOD * k
+        n, n_dot = np.array([0.1 * np.sin(2.0 * time), 0.0]), np.array([0.2 * np.cos(2.0 * time), 0.0])
+        sample = attitude(time, n, n_dot, rng)
+        if 1.0 < time < 2.0:
+            sample = Attitude(time, UAV, stuck, sample.motion)
+        stuck = sample.pose
+        steps.add(sample)
+    assert np.linalg.norm(steps.total[UAV]) < 0.025
+
+
 @pytest.mark.parametrize("noise", [1.0, 5.0])
 def test_noise_is_no_step(noise):
     _, confirmed = found(step=np.zeros(2), noise=noise, seconds=400.0)
@@ -70,6 +90,20 @@ def test_blow_that_turns_a_vehicle_is_no_step_of_its_attitude():
         after = max(PERIOD * k - 0.39, 0.0)
         steps.add(attitude(PERIOD * k, 3.0 * after * np.array([1.0, 0.0]), np.array([3.0 * (after > 0.0), 0.0]), rng))
         assert not steps.confirmed(lambda uav, a, b: np.zeros(2))
+
+
+@pytest.mark.parametrize("others", [-0.003, -0.001, 0.001, 0.003])
+def test_estimator_takes_a_step_once_however_moments_lie_about_it(others):
+    estimator, rng = started(), np.random.default_rng(1)
+    for k in range(1, 26):
+        for sample in all_samples(PERIOD * k, rng):
+            time = sample.time + others * (sample.source != UAV)
+            estimator.add(type(sample)(time, sample.source, sample.pose, sample.motion))
+    before = estimator.estimate(PERIOD * k + 0.01, REFERENCE)
+    estimator.take_attitude_step(AttitudeStep(UAV, PERIOD * k, PERIOD, ANGLE, 0.01))
+    after = estimator.estimate(PERIOD * k + 0.01, REFERENCE)
+    force = after.uav_force[UAV, :2] - before.uav_force[UAV, :2]
+    assert force == pytest.approx(-P.hover_thrust[UAV] * ANGLE, rel=0.3)
 
 
 def test_estimator_takes_a_step_for_a_force_of_the_vehicle_and_goes_on_with_its_attitude():

@@ -36,16 +36,18 @@ def test_parameter_is_requested_at_once_and_again_until_it_is_known():
     assert requests.due(100.0) == []
 
 
-def test_command_is_repeated_with_its_number_of_tries_until_it_counts_as_unanswered(requests):
-    command = requests.command(ARM, 1.0)
-    interval, tries = SETTINGS.command_interval, SETTINGS.command_tries
+@pytest.mark.parametrize(
+    ("number", "interval"), [(ARM, SETTINGS.retry_interval), (mavlink.MAV_CMD_DO_SET_MODE, SETTINGS.mode_interval)]
+)
+def test_command_is_repeated_with_its_number_of_tries_until_it_counts_as_unanswered(requests, number, interval):
+    command, tries = requests.command(number, 1.0), round(SETTINGS.tries * SETTINGS.retry_interval / interval)
     sent = [message for k in range(5 * tries) for message in requests.due(0.5 * interval * k)]
     assert [message.confirmation for message in sent] == list(range(tries))
     assert {(message.target_system, message.command, message.param1, message.param7) for message in sent} == {
-        (3, ARM, 1.0, 0.0)
+        (3, number, 1.0, 0.0)
     }
     assert command.state is CommandState.UNANSWERED
-    requests.take_acknowledgement(mavlink.MAVLink_command_ack_message(ARM, mavlink.MAV_RESULT_ACCEPTED))
+    requests.take_acknowledgement(mavlink.MAVLink_command_ack_message(number, mavlink.MAV_RESULT_ACCEPTED))
     assert command.state is CommandState.UNANSWERED
 
 

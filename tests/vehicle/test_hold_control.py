@@ -127,6 +127,14 @@ def test_error_by_dead_reckoning_is_followed_at_first_and_not_for_good():
     np.testing.assert_allclose(forces[-1][:2], [-integral, 0.0], rtol=0.02, atol=1e-3)
 
 
+def test_drift_of_a_dead_reckoning_is_forgotten_with_the_next_position():
+    controller = HoldController(STAY, HOVER, CALM, LEAST, G, replace(GAINS, horizontal_ki=0.0))
+    for k in range(100):
+        controller.command(measured(np.add(HERE, (0.5, 0.0, 0.0)), (0.2, 0.0, 0.0)), 0.02 * k, reckoned=True)
+    controller.command(measured(), 2.0)
+    assert force_of(controller.command(measured(), 2.02, reckoned=True))[:2] == pytest.approx((0.0, 0.0), abs=1e-9)
+
+
 def test_thrust_is_never_less_than_the_least_in_the_air():
     above = np.array(HERE) - [0.0, 0.0, 50.0]
     assert HoldController(STAY, HOVER, CALM, 15.0, G, GAINS).command(measured(above), 0.0)[1] == 15.0

@@ -169,6 +169,8 @@ class HoldController:
             errors = error_x, error_y, off_x, off_y
             self._drift = [drift + share * (error - drift) for error, drift in zip(errors, self._drift, strict=True)]
             error_x, error_y, off_x, off_y = (e - drift for e, drift in zip(errors, self._drift, strict=True))
+        else:
+            self._drift = [0.0] * 4
         i_x = self._integral_x + gains.horizontal_ki * error_x * step
         i_y = self._integral_y + gains.horizontal_ki * error_y * step
         size = math.hypot(i_x, i_y)

@@ -70,6 +70,8 @@ class AttitudeSteps:
         self._variances = np.full(parameters.number_of_uavs, self._nominal)
         """Of the differences of two attitudes, as they are at present (N,)."""
         self._last: dict[int, _Sample] = {}
+        self._stuck: set[int] = set()
+        """UAVs whose attitude has repeated itself although they turned: how far is not known."""
         self._candidates: dict[int, _Candidate] = {}
         self.total = np.zeros((parameters.number_of_uavs, 2))
         """Sum of all steps of each UAV (N, 2) (rad), those in telemetry alone, too."""
@@ -86,13 +88,18 @@ class AttitudeSteps:
             return
         self._last[uav] = sample
         candidate = self._candidates.pop(uav, None)
-        if last is None or sample.time - last.time > self._settings.gap or np.array_equal(sample.n, last.n):
+        if last is None or sample.time - last.time > self._settings.gap:
+            return
+        if np.array_equal(sample.n, last.n):
+            if sample.n_dot.any():
+                self._stuck.add(uav)
+            return
+        if uav in self._stuck:
+            self._stuck.remove(uav)
             return
         interval = sample.time - last.time
         jump = sample.n - last.n - 0.5 * interval * (sample.n_dot + last.n_dot)
         stepped = self._is_step(uav, jump, interval)
-        if stepped:
-            self.total[uav] += jump
         if candidate is not None:
             self._follow(candidate, sample, jump, stepped)
         elif stepped:
@@ -100,10 +107,16 @@ class AttitudeSteps:
             self._candidates[uav] = _Candidate(step, last, jump, None)
 
     def _follow(self, candidate: _Candidate, sample: _Sample, jump: Array, stepped: bool) -> None:
-        """Keep a ``candidate`` with the next ``sample``, unless that takes it back or comes late."""
+        """Keep a ``candidate`` with the next ``sample``, unless that takes it back or comes late.
+
+        What the first sample after it does not take back is none of an outlier, and counts in the sum.
+        """
         step, s = candidate.step, self._settings
         since = candidate.since + jump
         persists = float(since @ step.angle) > s.persistent_share * float(step.angle @ step.angle)
+        counted = candidate.latest is not None
+        if persists is not counted:
+            self.total[step.uav] += step.angle if persists else -step.angle
         if persists and not stepped and sample.time - step.time < s.response_time:
             self._candidates[step.uav] = candidate._replace(since=since, latest=sample)
 
