@@ -11,6 +11,7 @@ from gcs.config.flight_settings import DEFAULTS, FailsafeSettings
 from gcs.config.tables import MotionConfig
 from gcs.flight.alarms import Severity
 from gcs.flight.command_sequences import CommandSequence
+from gcs.flight.control_loop import ControlLoop
 from gcs.flight.landing_place import LandingPlace
 from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import Phase
@@ -19,6 +20,7 @@ from gcs.flight.preflight import Preflight
 from gcs.flight.team import Team
 from gcs.flight.team_clock import StepIntervals
 from gcs.mavlink.vehicle_link import VehicleLink
+from gcs.mission.model import Mission
 from idc_controller.arrays import Array
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.grounded_links import GroundedLinks
@@ -103,6 +105,30 @@ class System:
     """Over a payload on the ground; None: not estimated."""
     landing_speed: float = MotionConfig.landing_speed
     """Of the payload at touch-down (m/s)."""
+
+    @classmethod
+    def of(
+        cls, mission: Mission, team: Team, control: ControlLoop, obstacle_map: ObstacleMap, landing_place: LandingPlace
+    ) -> System:
+        """Return the objects of a flight of ``mission`` that has not begun."""
+        config, parameters = mission.system, control.controller.parameters
+        settings = config.flight
+        return cls(
+            team,
+            control.estimator,
+            control.controller.guidance,
+            PayloadMonitor(parameters, settings),
+            Preflight(team, settings),
+            PlanMonitor(parameters.number_of_uavs, settings.failsafe),
+            ImpactMonitor(team.links),
+            obstacle_map,
+            settings.failsafe,
+            kept_clearance=config.avoidance.margin + config.safety.planner.tracking,
+            control_interval=1.0 / config.rates.control,
+            landing_place=landing_place,
+            links=control.links,
+            landing_speed=config.motion.landing_speed,
+        )
 
     def obstruction(self, time: float, place: Array, within: float) -> Obstruction | None:
         """Return what is nearer than ``within`` (m) to the formation at rest at ``place`` (3,), by the obstacle map."""

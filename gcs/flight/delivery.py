@@ -49,7 +49,7 @@ class Delivery:
         new, self._reported = legs.refusals[self._reported :], len(legs.refusals)
         if new:
             step.raise_alarm("payload", DeliveryAlarm.UNLOADING_FAILED, f"{self._where}: {'; '.join(new)}")
-        flown = flight.mission_trajectory
+        flown = flight.flown.trajectory
         if step.in_air and flown is not None and not self._weighed:
             self._weighed = step.time - flown.start >= self._settings.mass_time
             if self._weighed:

@@ -58,7 +58,7 @@ class FlightStatus:
         What remains of the mission is taken to go on at its own speed (s).
         """
         flight = self._flight
-        time, mission, end = flight.time, flight.mission_trajectory, flight.expected_end
+        time, mission, end = flight.time, flight.flown.trajectory, flight.flown.expected_end
         if mission is None or flight.phase is Phase.AUTONOMOUS_LANDING:
             return time - flight.takeoff_time, math.inf
         flown = flight.landings - (flight.phase not in IN_AIR)

@@ -17,8 +17,8 @@ def reconfigure(flight: Flight, config: SystemConfig) -> None:
     plan may always have its reference's acceleration. Other settings of ``config`` must be the flight's.
     """
     flight.mission = replace(flight.mission, system=config)
-    if flight.mission_trajectory is not None:
-        flight.mission_trajectory.set_motion(config.motion)
+    if flight.flown.trajectory is not None:
+        flight.flown.trajectory.set_motion(config.motion)
     margin, control, guidance = config.avoidance.margin, flight.control, flight.system.guidance
     flight.system.landing_speed = config.motion.landing_speed
     flight.system.kept_clearance = margin + config.safety.planner.tracking

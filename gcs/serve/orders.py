@@ -101,7 +101,7 @@ class Orders:
         """True while a mission stands on the ground, and is to go on by itself."""
         flight = self._flight
         goes_on = self._flies_mission and flight.may_take_off and not flight.reason and self._session.is_armed
-        return goes_on and flight.phase in STANDING and (not flight.legs.ended or flight.phase is Phase.ON_GROUND)
+        return goes_on and flight.phase in STANDING and (not flight.flown.legs.ended or flight.phase is Phase.ON_GROUND)
 
     @property
     def may_begin_elsewhere(self) -> bool:
@@ -119,7 +119,7 @@ class Orders:
     @property
     def is_paused(self) -> bool:
         """True while what was flown is paused on its way."""
-        return self._flight.is_held
+        return self._flight.flown.is_held
 
     @property
     def is_settled(self) -> bool:
@@ -137,11 +137,7 @@ class Orders:
     @property
     def position(self) -> Position:
         """Where the payload is planned to be now."""
-        flight = self._flight
-        assert flight.mission_trajectory is not None
-        progress = flight.system.guidance.progress(flight.time)
-        north, east, down = flight.mission_trajectory.trajectory.position(progress).tolist()
-        return north, east, down
+        return self._flight.flown.position(self._flight.time)
 
     @property
     def lowest(self) -> float:
@@ -157,7 +153,7 @@ class Orders:
             return False
         if flight.phase in IN_AIR:
             return flight.phase is Phase.HOLD and flight.next_source is None
-        return flight.legs.ended and flight.landings > 0 and not flight.reason
+        return flight.flown.legs.ended and flight.landings > 0 and not flight.reason
 
     def why_unflyable(self) -> str | None:
         """Return why the mission cannot be begun as it was chosen, or gone on with, from here; None: it can."""
@@ -196,7 +192,7 @@ class Orders:
         if not self._session.in_air:
             self._begin(self.mission, self._route())
         elif paused and wanted <= self._speed.legs.planned:
-            self._flight.resume(self._speed.plan(self._speed.legs, wanted))
+            self._flight.flown.resume(self._flight.time, self._speed.plan(self._speed.legs, wanted))
         elif left is not None and wanted <= left.speeds.planned:
             self._fly(left.legs, left.speeds, wanted)
         else:
@@ -230,7 +226,7 @@ class Orders:
 
     def hold(self) -> None:
         """Come to rest on the way, and hold."""
-        self._flight.hold()
+        self._flight.flown.hold(self._flight.time)
         self._session.enter(px4.MODE_HOLD)
 
     def go_to(self, place: Position, speed: float | None) -> None:
@@ -280,8 +276,8 @@ class Orders:
         if self._flies_mission:
             self.first = self._flight.next_source or ""
             if self.first:
-                self._flight.hold()
-                self._left = _LeftMission(self._flight.remaining(), self._speed.legs)
+                self._flight.flown.hold(self._flight.time)
+                self._left = _LeftMission(self._flight.flown.remaining(), self._speed.legs)
             self._flies_mission = False
         speed = max([self._cruise_speed, *(leg.speed for leg in legs if isinstance(leg, FlyTo))])
         self._fly(iter(legs), LegSpeeds(speed, speed), speed)
@@ -297,7 +293,7 @@ class Orders:
         first, up = next(legs), list[Leg]()
         if self._above_ground != self.position and not isinstance(first, Land):
             up.append(FlyTo(self._above_ground, self._world.system.motion.climb_speed, first.source))
-        self._flight.fly(chain(up, (first,), legs), self._speed.plan(speeds, wanted))
+        self._flight.flown.fly(self._flight.time, chain(up, (first,), legs), self._speed.plan(speeds, wanted))
         self._session.changes += 1
 
     def _have_speed(self) -> None:

@@ -95,7 +95,7 @@ class TrackedFlight(Flight):
         )  # fmt: skip
         super().__init__(MISSION, self.team, control, AlarmLog(), stack.obstacle_map(MISSION))
         self.failsafes.evaluate = none
-        self._pad = RestTrajectory(np.array([0.0, 0.0, STANDING]), 0.0)
+        self.payload_control.pad = RestTrajectory(np.array([0.0, 0.0, STANDING]), 0.0)
         self._sequence, self.phase = Arming(self.team, 0.0), Phase.ARM
 
     def on_trajectory(self, effective, trajectory):

@@ -39,7 +39,7 @@ class Watched(Flight):
         super().__init__(MISSION, team, control, AlarmLog(), stack.obstacle_map(MISSION))
         self.phase = phase
         if phase in (Phase.CLIMB, Phase.FLY, Phase.LAND):
-            self.mission_trajectory = MissionTrajectory(MISSION, np.zeros(3), 0.0)
+            self.flown.trajectory = MissionTrajectory(MISSION, np.zeros(3), 0.0)
 
     def fails(self, failsafe, time=5.0, **trigger):
         self.raise_failsafe(time, failsafe, Trigger("a reason", **trigger))
@@ -74,8 +74,8 @@ def test_interrupted_flight_brakes_and_lands_under_control(phase):
     undisturbed, flight = Watched(phase), Watched(phase)
     flight.fails(Failsafe.INTERRUPTED)
     assert (flight.phase, flight.commands) == (phase, [])
-    assert flight.expected_end < undisturbed.expected_end or math.isinf(undisturbed.expected_end)
-    path = flight.mission_trajectory.trajectory.derivatives(np.linspace(5.0, 60.0, 200), 0)[0]
+    assert flight.flown.expected_end < undisturbed.flown.expected_end or math.isinf(undisturbed.flown.expected_end)
+    path = flight.flown.trajectory.trajectory.derivatives(np.linspace(5.0, 60.0, 200), 0)[0]
     assert np.ptp(path[:, :2], axis=0).max() < 2.0
 
 
