@@ -44,11 +44,7 @@ class FlownMission:
     @property
     def in_air(self) -> bool:
         """True from the beginning of a climb to the touchdown."""
-        return self._in_air is not None
-
-    @property
-    def _in_air(self) -> MissionTrajectory | None:
-        return None if self._has_landed else self.trajectory
+        return self.trajectory is not None and not self._has_landed
 
     @property
     def expected_end(self) -> float:
@@ -87,13 +83,15 @@ class FlownMission:
 
     def passed(self, time: float) -> list[str]:
         """Return the sources of the legs that were done by ``time``, in their order, each as often as it has legs."""
-        flown = self._in_air
-        return self._passed if flown is None else [*self._passed, *flown.passed(self.progress(time))]
+        if self.trajectory is None or self._has_landed:
+            return self._passed
+        return [*self._passed, *self.trajectory.passed(self.progress(time))]
 
     def next_source(self, time: float) -> str | None:
         """Return the source of what is flown to, or is next; None: nothing, or it holds for good at the last."""
-        flown = self._in_air
-        return self.legs.next_source if flown is None else flown.next_source(self.progress(time))
+        if self.trajectory is None or self._has_landed:
+            return self.legs.next_source
+        return self.trajectory.next_source(self.progress(time))
 
     # From ground to ground
 
