@@ -127,7 +127,7 @@ class PayloadControl:
         setpoints = Setpoints(decision.directions, thrusts)
         if self._spool_up is not None:
             self._spool_up.sent(effective, setpoints, leaves, in_air=in_air)
-            if system.payload.is_clear(estimate):
+            if in_air and system.payload.is_clear(estimate):
                 self._spool_up = None
         if in_air:
             loop.send(record, effective, leaves, system.team.hold)
