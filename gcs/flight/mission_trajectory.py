@@ -140,9 +140,11 @@ class MissionTrajectory:
 
     def remaining(self) -> list[MissionLeg]:
         """Return what remains, where it came to rest to hold, of the legs that have been read."""
-        take_off = self._take_off
-        climb = [] if take_off is None or not self._climbs(self._held_at) else [replace(take_off, delay=0.0)]
-        return [*climb, *self._legs.remaining(self._held_at, _place(self._rest), _place(self._pad))]
+        take_off, here = self._take_off, _place(self._rest)
+        legs = self._legs.remaining(self._held_at, here, _place(self._pad))
+        if take_off is None or not self._climbs(self._held_at):
+            return legs
+        return [replace(take_off, position=(*here[:2], take_off.position[2]), delay=0.0), *legs]
 
     def go_on(self, followed: Trajectory, time: float, legs: Iterator[MissionLeg], speed: float) -> None:
         """Come to rest as soon as the limits allow, then fly ``legs``, none faster than ``speed`` (m/s), and land.

@@ -217,7 +217,7 @@ class Orders:
         self.first = first or self.first
         route = self._route()
         assert isinstance(route, Route)
-        self._fly(route.legs(self._above_ground), LegSpeeds.of(route), route.speed)
+        self._fly(route.legs(self._above_ground), self._speeds_of(route), route.speed)
 
     def _route(self) -> Route | Lissajous:
         """Return the mission's route from the chosen item on, with the speed that was ordered."""
@@ -273,8 +273,11 @@ class Orders:
         self._flies_mission = False
 
     def _begin(self, mission: Mission, route: Route | Lissajous) -> None:
-        self._speed.plan(LegSpeeds.of(route), self._speed.of_mission(mission))
+        self._speed.plan(self._speeds_of(route), self._speed.of_mission(mission))
         self._flight.begin(replace(mission, reference=route))
+
+    def _speeds_of(self, route: Route | Lissajous) -> LegSpeeds:
+        return LegSpeeds.of(route, self._world.system.motion.speed)
 
     def _leave_mission(self, legs: list[Leg]) -> None:
         if self._flies_mission:

@@ -6,6 +6,7 @@ import math
 
 import pytest
 
+from gcs.mission.model import Lissajous
 from gcs.mission.route import END, Climb, FlyTo, Go, HoldForever, Land, Place, Route, Speed
 from gcs.serve.flight_speed import FlightSpeed, LegSpeeds
 
@@ -41,5 +42,12 @@ def test_legs_are_as_fast_as_the_mission_names_unless_a_slower_speed_is_ordered(
     wanted: float, cap: float, limit: float
 ) -> None:
     speed = FlightSpeed()
-    assert speed.plan(LegSpeeds.of(MISSION_SPEED), wanted) == cap
+    assert speed.plan(LegSpeeds.of(MISSION_SPEED, 1.5), wanted) == cap
     assert speed.limit(wanted) == limit and speed.limit(0.4) == 0.4
+
+
+@pytest.mark.parametrize("wanted", [math.inf, 0.4])
+def test_legs_beside_a_curve_have_the_cruise_speed_and_the_curve_its_own_up_to_a_limit(wanted: float) -> None:
+    speed = FlightSpeed()
+    assert speed.plan(LegSpeeds.of(Lissajous((6.0, 3.0), 0.5, 5.0, 40.0), 1.5), wanted) == 1.5
+    assert speed.limit(wanted) == wanted
