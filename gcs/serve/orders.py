@@ -12,7 +12,7 @@ from gcs.flight.mission_legs import MissionLeg
 from gcs.flight.phase import IN_AIR, STANDING, Phase
 from gcs.mavlink import px4
 from gcs.mission.model import Lissajous, Mission
-from gcs.mission.route import FlyTo, HoldForever, Land, Leg, Position, Route
+from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Position, Route
 from gcs.mission.steps import Climb, Place, Stay
 from gcs.serve.flight_speed import FlightSpeed, LegSpeeds
 
@@ -34,6 +34,17 @@ class _LeftMission(NamedTuple):
 
     legs: Iterator[MissionLeg]
     speeds: LegSpeeds
+
+    def with_speed(self, wanted: float) -> _LeftMission:
+        """Return it with the speed ``wanted`` (m/s), if that is faster, of the legs whose mission names none."""
+        planned, fastest = self.speeds
+        if wanted <= planned:
+            return self
+        legs = (
+            replace(leg, speed=wanted) if isinstance(leg, FlyTo | Circle) and leg.speed == planned else leg
+            for leg in self.legs
+        )
+        return _LeftMission(legs, LegSpeeds(wanted, max(wanted, fastest)))
 
 
 class Ordered(Protocol):
@@ -197,10 +208,11 @@ class Orders:
             self._begin(self.mission, self._route())
         elif paused and wanted <= self._speed.legs.planned:
             self._flight.resume(self._speed.plan(self._speed.legs, wanted))
-        elif left is not None and wanted <= left.speeds.planned:
+        elif paused or left is not None:
+            left = (left or _LeftMission(self._flight.remaining(), self._speed.legs)).with_speed(wanted)
             self._fly(left.legs, left.speeds, wanted)
         else:
-            self._begin_in_air(self._flight.next_source if paused else None)
+            self._begin_in_air(None)
         self._limit_speed()
         self._session.enter(px4.MODE_MISSION)
 
