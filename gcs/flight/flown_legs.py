@@ -14,7 +14,7 @@ from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Position, TakeOf
 from idc_controller.arrays import Array
 from idc_controller.trajectory import paths
 from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
-from idc_controller.trajectory.trajectory import Trajectory
+from idc_controller.trajectory.trajectory import RestTrajectory, Trajectory
 from idc_controller.trajectory.waypoints import WaypointTrajectory
 
 
@@ -39,11 +39,9 @@ class FlownLegs:
         """Return the trajectory along them from ``here`` (3,) at ``time``; the others are read when it is evaluated."""
         north, east, down = here.tolist()
         self._begin = time, (north, east, down)
-        if self._read and isinstance(curve := self._read[0], Curve):
-            return self._figure(curve, time, here)
         limits = replace(self._motion.limits, speed=self._speed)
         self._waypoints = WaypointTrajectory(here, self._lines(), limits, start=time, corner=self._motion.corner)
-        return self._waypoints
+        return self._waypoints.then(self._after_waypoints)
 
     def passed(self, time: float) -> list[str]:
         """Return the sources of the legs that were flown until ``time``."""
@@ -57,10 +55,10 @@ class FlownLegs:
 
     def remaining(self, time: float, here: Position, pad: Position) -> list[MissionLeg]:
         """Return what remains at ``time``, ``here``, of those that were read; a curve leads back above the ``pad``."""
-        if self._curve is not None and isinstance(leg := self._read[0], Curve):
-            return [_rest_of_curve(leg, self._curve, time, pad)]
         passages = [] if self._waypoints is None else self._waypoints.passages
         left = remaining_legs(self._read, passages, time, here, self._begin)
+        if left and isinstance(curve := left[-1], Curve):
+            return [*left[:-1], _rest_of_curve(curve, self._curve, time, pad)]
         if self.landing is None:
             return left
         above = FlyTo((*self.landing.position[:2], here[2]), self._motion.speed, self.landing.source)
@@ -79,6 +77,7 @@ class FlownLegs:
                 yield leg
 
     def _lines(self) -> Iterator[paths.Leg | paths.Circle]:
+        """Yield the legs up to the landing or a curve."""
         for leg in self._to_landing():
             if isinstance(leg, FlyTo):
                 yield paths.Leg(leg.position, leg.speed, leg.hold)
@@ -88,6 +87,12 @@ class FlownLegs:
                 yield paths.Leg(leg.position, self._motion.speed, math.inf)
             elif isinstance(leg, TakeOff):
                 yield paths.Leg(leg.position, self._motion.climb_speed, leg.delay)
+            elif isinstance(leg, Curve):
+                return
+
+    def _after_waypoints(self, time: float, here: Array) -> Trajectory:
+        last = self._read[-1] if self._read else None
+        return self._figure(last, time, here) if isinstance(last, Curve) else RestTrajectory(here, time)
 
     def _figure(self, leg: Curve, time: float, here: Array) -> Trajectory:
         """Return the trajectory to the curve, along it, and back above the pad."""
@@ -108,7 +113,9 @@ class FlownLegs:
         return there.then(along).then(lambda begin, end: straight(begin, end, above))
 
 
-def _rest_of_curve(leg: Curve, curve: LissajousTrajectory, time: float, pad: Position) -> Curve:
+def _rest_of_curve(leg: Curve, curve: LissajousTrajectory | None, time: float, pad: Position) -> Curve:
+    leg = replace(leg, above=(*pad[:2], -leg.curve.altitude))
+    if curve is None:
+        return leg
     begin, end = curve.full_rate
-    left, above = max(min(end - time, end - begin), 0.0), (*pad[:2], -leg.curve.altitude)
-    return replace(leg, duration=left, phase=float(curve.phase(time)), above=above)
+    return replace(leg, duration=max(min(end - time, end - begin), 0.0), phase=float(curve.phase(time)))

@@ -21,6 +21,8 @@ _BACK, _BACK_STEP = 60.0, 0.1
 """s; how far back a place is looked for from which the landing place is seen, and in which steps."""
 _REST_STEP = 0.01
 """s; between the times at which it is looked for where on its path a trajectory comes to rest."""
+_ON_PATH = 0.02
+"""m; a rest that is nearer to where a path of its length ends is on it: more than lengths differ by their steps."""
 _SAME = 1e-3
 """m; a shorter way is none: a place of rest is reached before it is left."""
 
@@ -130,19 +132,22 @@ class MissionTrajectory:
             return
         stop = followed.stop(time)
         end = stop.end  # planned as a whole: it reads no leg any more
-        if followed is self.trajectory:
-            times = np.arange(time, max(end, time) + _REST_STEP, _REST_STEP)
-            ways, stopped = _ways(followed, times), _ways(stop, times)[-1]
-            progress = float(times[min(np.searchsorted(ways, stopped - _SAME), len(times) - 1)])
-        self._held_at, self._rest = progress, stop.position(end)
+        self._rest = stop.position(end)
+        # Along this one as far as along its stop, which may be slower: a rest that is not on it is no progress.
+        since = np.arange(0.0, max(end - time, 0.0) + _REST_STEP, _REST_STEP)
+        ways, stopped = _ways(self.trajectory, progress + since), _ways(stop, time + since)[-1]
+        at = progress + float(np.interp(stopped - _SAME, ways, since))
+        self._held_at = at if math.dist(self.trajectory.position(at), self._rest) < _ON_PATH else progress
         self.landing_from = self.slow_from = math.inf
         self._above = self.trajectory = stop.then(lambda end, here: RestTrajectory(here, end, math.inf))
 
     def remaining(self) -> list[MissionLeg]:
         """Return what remains, where it came to rest to hold, of the legs that have been read."""
-        take_off = self._take_off
-        climb = [] if take_off is None or not self._climbs(self._held_at) else [replace(take_off, delay=0.0)]
-        return [*climb, *self._legs.remaining(self._held_at, _place(self._rest), _place(self._pad))]
+        take_off, here = self._take_off, _place(self._rest)
+        legs = self._legs.remaining(self._held_at, here, _place(self._pad))
+        if take_off is None or not self._climbs(self._held_at):
+            return legs
+        return [replace(take_off, position=(*here[:2], take_off.position[2]), delay=0.0), *legs]
 
     def go_on(self, followed: Trajectory, time: float, legs: Iterator[MissionLeg], speed: float) -> None:
         """Come to rest as soon as the limits allow, then fly ``legs``, none faster than ``speed`` (m/s), and land.

@@ -337,6 +337,7 @@ class TeamAircraft:
         self.orders.choose(after)
         if is_begun:
             self.orders.fly_item()
+            self._seen = min(self._seen, len(session.flight.passed))  # the last is reported again if it was chosen
         return ACCEPTED
 
     @property
@@ -374,4 +375,5 @@ class TeamAircraft:
             if source in self._labels:
                 self._reached.append(source)
                 self._on_reached(self._labels.index(source))
-        self._seen, self._finished = len(passed), self.orders.is_mission_done
+        self._seen = max(self._seen, len(passed))  # what is left of a hold is not passed, but was reported
+        self._finished = self.orders.is_mission_done

@@ -16,12 +16,12 @@ class LegSpeeds(NamedTuple):
     planned: float
     """Where their mission names none; inf: of a curve, which has its own."""
     fastest: float
-    """That none of them exceeds."""
+    """That none of them exceeds; beside a curve those that lead to it and back."""
 
     @classmethod
-    def of(cls, reference: Route | Lissajous) -> LegSpeeds:
-        """Return the speeds of what a mission flies."""
-        return cls(reference.speed, reference.fastest) if isinstance(reference, Route) else cls(math.inf, math.inf)
+    def of(cls, reference: Route | Lissajous, cruise: float) -> LegSpeeds:
+        """Return the speeds of what a mission flies; ``cruise``: beside a curve (m/s)."""
+        return cls(reference.speed, reference.fastest) if isinstance(reference, Route) else cls(math.inf, cruise)
 
 
 class FlightSpeed:
@@ -41,7 +41,8 @@ class FlightSpeed:
 
     def of_mission(self, mission: Mission) -> float:
         """Return the speed wanted of a mission where that names none; inf: its own."""
-        return LegSpeeds.of(mission.reference).planned if self.ordered is None else self.ordered
+        planned = LegSpeeds.of(mission.reference, mission.system.motion.speed).planned
+        return planned if self.ordered is None else self.ordered
 
     def plan(self, legs: LegSpeeds, wanted: float) -> float:
         """Return the speed that none of ``legs`` is to exceed, which are planned to have the speed ``wanted``."""

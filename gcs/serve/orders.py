@@ -12,7 +12,7 @@ from gcs.flight.mission_legs import MissionLeg
 from gcs.flight.phase import IN_AIR, STANDING, Phase
 from gcs.mavlink import px4
 from gcs.mission.model import Lissajous, Mission
-from gcs.mission.route import FlyTo, HoldForever, Land, Leg, Position, Route
+from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Position, Route
 from gcs.mission.steps import Climb, Place, Stay
 from gcs.serve.flight_speed import FlightSpeed, LegSpeeds
 
@@ -34,6 +34,17 @@ class _LeftMission(NamedTuple):
 
     legs: Iterator[MissionLeg]
     speeds: LegSpeeds
+
+    def with_speed(self, wanted: float) -> _LeftMission:
+        """Return it with the speed ``wanted`` (m/s), if that is faster, of the legs whose mission names none."""
+        planned, fastest = self.speeds
+        if wanted <= planned:
+            return self
+        legs = (
+            replace(leg, speed=wanted) if isinstance(leg, FlyTo | Circle) and leg.speed == planned else leg
+            for leg in self.legs
+        )
+        return _LeftMission(legs, LegSpeeds(wanted, max(wanted, fastest)))
 
 
 class Ordered(Protocol):
@@ -193,10 +204,11 @@ class Orders:
             self._begin(self.mission, self._route())
         elif paused and wanted <= self._speed.legs.planned:
             self._flight.flown.resume(self._flight.time, self._speed.plan(self._speed.legs, wanted))
-        elif left is not None and wanted <= left.speeds.planned:
+        elif paused or left is not None:
+            left = (left or _LeftMission(self._flight.flown.remaining(), self._speed.legs)).with_speed(wanted)
             self._fly(left.legs, left.speeds, wanted)
         else:
-            self._begin_in_air(self._flight.next_source if paused else None)
+            self._begin_in_air(None)
         self._limit_speed()
         self._session.enter(px4.MODE_MISSION)
 
@@ -213,7 +225,7 @@ class Orders:
         self.first = first or self.first
         route = self._route()
         assert isinstance(route, Route)
-        self._fly(route.legs(self._above_ground), LegSpeeds.of(route), route.speed)
+        self._fly(route.legs(self._above_ground), self._speeds_of(route), route.speed)
 
     def _route(self) -> Route | Lissajous:
         """Return the mission's route from the chosen item on, with the speed that was ordered."""
@@ -269,8 +281,11 @@ class Orders:
         self._flies_mission = False
 
     def _begin(self, mission: Mission, route: Route | Lissajous) -> None:
-        self._speed.plan(LegSpeeds.of(route), self._speed.of_mission(mission))
+        self._speed.plan(self._speeds_of(route), self._speed.of_mission(mission))
         self._flight.begin(replace(mission, reference=route))
+
+    def _speeds_of(self, route: Route | Lissajous) -> LegSpeeds:
+        return LegSpeeds.of(route, self._world.system.motion.speed)
 
     def _leave_mission(self, legs: list[Leg]) -> None:
         if self._flies_mission:

@@ -16,6 +16,12 @@ from idc_controller.model.drag import Air
 from idc_controller.trajectory.flatness import PayloadTrajectory
 from idc_controller.trajectory.trajectory import RestTrajectory, ScaledReference, Trajectory
 
+_SLOWEST = 0.01
+"""Progress rate below which the mission is stopped as at rest, which it is within a few centimetres.
+
+A trajectory in a slower time has as many more control points: this bounds them to about 128 times those planned.
+"""
+
 
 class Guidance:
     """Follows the mission at its own speed: progress is time. Where a controller does not avoid obstacles."""
@@ -156,12 +162,13 @@ class AdaptiveGuidance(Guidance):
         """See :meth:`Guidance.stopping_trajectory`.
 
         While the tracked trajectory is deflected, or the payload does not move, the mission is no place to stop at:
-        then it is a rest near where the payload is. While the progress is slow it is what is followed, as slow.
+        then it is a rest near where the payload is. While the progress is slow it is what is followed, as slow; below
+        a rate of 0.01 it is a rest, too.
         """
         current = self._current
         if current is None or self._tracked is None or (not self._deflected and current.rate == 1.0):
             return self.navigator.followed(mission), self._followed_progress(time)
-        if not self._deflected and current.rate > 0.0:
+        if not self._deflected and current.rate >= _SLOWEST:
             followed = self.navigator.followed(mission)
             return followed.scaled(self._followed_progress(time), current.rate, time), time
         if rest is not None:

@@ -6,7 +6,8 @@ from avoidance_scene import avoidance, straight
 from paper_system import system
 
 from idc_controller.model.drag import Air
-from idc_controller.trajectory.trajectory import RestTrajectory
+from idc_controller.trajectory.spline import SUPPORT
+from idc_controller.trajectory.trajectory import RestTrajectory, ScaledReference
 
 STEP = 0.05
 SPEED = 1.5
@@ -105,6 +106,19 @@ def test_slow_mission_is_stopped_from_the_speed_and_place_that_it_has(guidance):
     stop = followed.stop(progress)
     assert stop.derivatives([progress])[:, 0] == pytest.approx(reference.derivatives(np.array([time]))[:, 0], abs=1e-9)
     assert 0.0 < stop.position(stop.end)[0] - stop.position(progress)[0] < SPEED
+
+
+@pytest.mark.parametrize(("rate", "most"), [(1e-2, 128), (9e-3, 0), (1e-6, 0)])
+def test_almost_resting_mission_is_stopped_as_at_rest_however_slow_it_is(guidance, rate, most):
+    mission = straight(40.0, SPEED)
+    guidance.reference(5.0, mission)
+    guidance.observe(RestTrajectory(mission.position(8.0)), 0.0, None, None)
+    guidance._current = ScaledReference(mission, 5.0, 8.0, rate)
+    followed, _ = guidance.stopping_trajectory(5.0, mission)
+    planned = len(mission._spline(8.0).control_points)  # at rest twice the support is added before each halving
+    assert len(getattr(followed, "control_points", ())) <= most * (planned + 4 * SUPPORT)
+    end = followed.stop(5.0).position(1e3)
+    assert np.linalg.norm(end - mission.position(8.0)) < 0.05
 
 
 @pytest.mark.parametrize(("share", "rate"), [(0.0, 1.0), (0.45, 1.0), (0.75, 0.5), (1.0, 0.0), (3.0, 0.0)])

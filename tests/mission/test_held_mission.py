@@ -80,7 +80,18 @@ def test_hold_is_reached_within_the_limits_without_a_step_and_left_as_well(tmp_p
     assert np.abs(np.diff(held.derivatives[2], axis=0)).max() < limits.limits.jerk * STEP + 1e-3
 
 
-@pytest.mark.parametrize("share", [0.1, 0.3, 0.45, 0.6, 0.75, 0.9])
+@pytest.mark.parametrize("rate", [0.9, 0.7, 0.1])
+def test_waypoint_passed_before_a_slow_progress_comes_to_rest_is_not_flown_to_again(tmp_path, rate):
+    mission = read(tmp_path, wpl(TAKE_OFF, A, B, RETURN))
+    whole = MissionTrajectory(mission, np.array([0.0, 0.0, -0.25]), 0.0)
+    times = np.arange(0.0, 60.0, STEP)
+    before = times[np.searchsorted(whole.trajectory.derivatives(times, 0)[0, :, 0], 9.9)]
+    whole.hold(whole.trajectory.scaled(before, rate, 100.0), 100.0, before)
+    rest = whole.trajectory.position(120.0)[0]
+    assert rest > 10.0 and whole.remaining()[0].position[0] == pytest.approx(20.0, abs=1e-2)
+
+
+@pytest.mark.parametrize("share", [0.02, 0.1, 0.3, 0.45, 0.6, 0.75, 0.9])
 def test_curve_goes_on_at_its_own_point_for_the_rest_of_its_duration(tmp_path, share):
     mission = read_mission(short_figure(tmp_path))
     undisturbed = Flown(mission)
@@ -93,6 +104,9 @@ def test_curve_goes_on_at_its_own_point_for_the_rest_of_its_duration(tmp_path, s
     a, b = mission.reference.amplitude
     phases = np.linspace(0.0, 2.0 * np.pi, 2000)
     curve = np.stack([a * np.sin(phases), -b * np.sin(2.0 * phases)], axis=1)
+    along = undisturbed.derivatives[0][: round(undisturbed.curve.full_rate[1] / STEP) : 25]
+    missed = np.linalg.norm(along[:, None] - path[None, ::2], axis=2).min(axis=1)
+    assert missed.max() < 2 * mission.system.motion.curve_speed * STEP, "it flies all of the curve"
     back = 0 if held.curve is None else round((held.duration - held.curve.end) / STEP)
     curved = path[: len(path) - back : 3]
     high = curved[curved[:, 2] < -mission.reference.altitude + 1e-3]

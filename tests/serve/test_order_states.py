@@ -138,7 +138,7 @@ def test_pause_before_an_obstacle_holds_clear_of_it_and_goes_on_round_it(tmp_pat
     world = read_mission(tmp_path / "pole.toml", None, {"team.vehicles": 3})
     with TeamBench(world, tmp_path / "run") as team:
         team.ready()
-        upload(team, UP._replace(z=4.0), at(14.0, 0.0, 4.0), HOME)
+        upload(team, UP._replace(z=4.0), at(14.0, 0.0, 4.0)._replace(param1=4.0), HOME)
         team.order(START)
         team.until("LOCAL_POSITION_NED", lambda found: found.x > 5.0)
         began = team.now
@@ -151,6 +151,11 @@ def test_pause_before_an_obstacle_holds_clear_of_it_and_goes_on_round_it(tmp_pat
         assert np.hypot(*(paused.position[-1, :2] - (8.0, 0.4))) > 1.5
         team.order(set_mode(px4.MODE_MISSION))
         team.until("MISSION_ITEM_REACHED", lambda found: found.seq == 1)
+        team.order(set_mode(px4.MODE_HOLD))
+        team.run(1.0)
+        team.order(set_mode(px4.MODE_MISSION))
+        team.until("LOCAL_POSITION_NED", lambda found: found.x < 13.0)
+        assert [found.seq for found in team.got("MISSION_ITEM_REACHED")] == [0, 1], "paused in its hold, reported once"
         team.order(set_mode(px4.MODE_LAND))
         team.disarmed()
         [result] = team.results
