@@ -233,11 +233,9 @@ class Team:
     def _ready(self) -> None:
         """Wait for the checks before take-off."""
         self._drive.run(lambda: self._aircraft.arming_problem(self.time) is None, _READY_TIME)
-        self._motion()  # where it stands, until the flight measures it anew
 
     def _motion(self) -> PayloadMotion | None:
         with self._drive.lock:
-            self._server.report.update(self.time)
             return self._server.report.own_position
 
     def _order(self, carry_out: Callable[[], Answer]) -> None:

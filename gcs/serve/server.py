@@ -141,8 +141,8 @@ class TeamServer:
         self.session.step(now)
         self._send_changes()
         self._missions.run(now)
+        self.report.update(now)
         if self._peers.next_due <= now:
-            self.report.update(now)
             out += self._peers.datagrams_to_send(self, now)
         return out
 

@@ -56,6 +56,7 @@ def test_orders_are_carried_out_and_refusals_raise(tmp_path: Path) -> None:
         second = team.finish()
         assert [flight.outcome for flight in team.flights] == ["completed", "completed"]
         assert second is not None and abs(second.truth["payload_x_m"][-1]) < 0.2
+        assert team.position == pytest.approx((0.0, 0.0, 0.3), abs=0.1), "not measured anew yet"
         assert team.finish() is None, "none flies"
 
 
