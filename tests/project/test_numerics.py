@@ -16,8 +16,10 @@ from gcs import numerics
 from gcs.record.reader import read_table
 
 ROOT = Path(__file__).parents[2]
-ROUNDING = 1e-9
-"""Most that records (m, rad, N) may differ by: 1e-13 of rounding, a thousandfold grown by differences and gains."""
+ROUNDING = 1e-5
+"""Most that records (m, rad, N) may differ by: rounding of 1e-17 now and then changes the last bit of a set-point, which
+is in single precision, by 2e-6 N of the largest thrust; fivefold grown by gains.
+"""
 
 
 @pytest.fixture
