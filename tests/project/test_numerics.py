@@ -17,8 +17,9 @@ from gcs.record.reader import read_table
 
 ROOT = Path(__file__).parents[2]
 ROUNDING = 1e-5
-"""Most that records (m, rad, N) may differ by: rounding of 1e-17 now and then changes the last bit of a set-point, which
-is in single precision, by 2e-6 N of the largest thrust; fivefold grown by gains.
+"""Most that records (m, rad, N) may differ by: rounding of 1e-17 now and then changes the last bit of a set-point.
+
+That is in single precision: 2e-6 N of the largest thrust, fivefold grown by gains.
 """
 
 
