@@ -1,7 +1,8 @@
 """Conditions of failsafes of links and vehicles: telemetry, commands, modes, and the ground's own control steps."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from operator import attrgetter
 
 from gcs.flight.condition import Condition, Moment, System, Trigger, of_a_vehicle
 from gcs.flight.link_limit import latency_exceeded
@@ -33,11 +34,7 @@ def all_telemetry_lost(system: System, moment: Moment) -> Trigger | None:
 
 
 def telemetry_lost(system: System, moment: Moment) -> Trigger | None:
-    timeout = system.settings.telemetry_timeout
-    for i, link in enumerate(system.team.links):
-        if moment.now - link.telemetry_received_at > timeout:
-            return Trigger(f"vehicle {link.system_id} sends no telemetry for {timeout:g} s", (i,))
-    return None
+    return _first_late(system, moment, attrgetter("telemetry_received_at"), "sends no telemetry")
 
 
 def link_latency_exceeded(system: System, moment: Moment) -> Trigger | None:
@@ -75,11 +72,7 @@ def positions_lost(system: System, moment: Moment) -> Trigger | None:
 def pose_missing(system: System, moment: Moment) -> Trigger | None:
     if moment.phase is not Phase.SPOOL_UP:
         return None  # in the air the others carry on
-    timeout = system.settings.telemetry_timeout
-    for i, link in enumerate(system.team.links):
-        if moment.now - link.complete_telemetry_received_at > timeout:
-            return Trigger(f"vehicle {link.system_id} does not send all telemetry for {timeout:g} s", (i,))
-    return None
+    return _first_late(system, moment, attrgetter("complete_telemetry_received_at"), "does not send all telemetry")
 
 
 def data_link_lost(system: System, moment: Moment) -> Trigger | None:
@@ -100,6 +93,17 @@ def control_overrun(system: System, moment: Moment) -> Trigger | None:
     return Trigger(
         f"control steps are made every {usual * 1e3:.0f} ms (limit {limit * 1e3:.0f} ms): this machine is too busy"
     )
+
+
+def _first_late(
+    system: System, moment: Moment, received_at: Callable[[VehicleLink], float], what: str
+) -> Trigger | None:
+    """Return the first vehicle of which nothing was ``received_at`` within the timeout; ``what`` it fails to do."""
+    timeout = system.settings.telemetry_timeout
+    for i, link in enumerate(system.team.links):
+        if moment.now - received_at(link) > timeout:
+            return Trigger(f"vehicle {link.system_id} {what} for {timeout:g} s", (i,))
+    return None
 
 
 def _names(links: Iterable[VehicleLink]) -> str:
