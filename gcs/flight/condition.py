@@ -22,6 +22,7 @@ from gcs.flight.team_clock import StepIntervals
 from gcs.mavlink.vehicle_link import VehicleLink
 from gcs.mission.model import Mission
 from idc_controller.arrays import Array
+from idc_controller.control.load_adaptation import LoadAdaptation
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.grounded_links import GroundedLinks
 from idc_controller.estimation.measurements import Estimate
@@ -101,6 +102,8 @@ class System:
     """Of the control steps that were made."""
     landing_place: LandingPlace | None = None
     """None: it is not watched."""
+    load: LoadAdaptation | None = None
+    """The load as it is learnt; None: it is not."""
     links: GroundedLinks | None = None
     """Over a payload on the ground; None: not estimated."""
     landing_speed: float = MotionConfig.landing_speed
@@ -126,6 +129,7 @@ class System:
             kept_clearance=config.avoidance.margin + config.safety.planner.tracking,
             control_interval=1.0 / config.rates.control,
             landing_place=landing_place,
+            load=control.controller.load,
             links=control.links,
             landing_speed=config.motion.landing_speed,
         )
