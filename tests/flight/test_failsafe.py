@@ -13,7 +13,7 @@ from gcs.config import read_system
 from gcs.config.flight_settings import DEFAULTS
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.command_sequences import AutonomousLanding
-from gcs.flight.condition import Check, Moment, Reaction, System, Trigger
+from gcs.flight.condition import Check, Moment, System, Trigger
 from gcs.flight.delivery import DeliveryAlarm
 from gcs.flight.detectors import MonitorAlarm
 from gcs.flight.failsafe import Failsafe
@@ -22,6 +22,7 @@ from gcs.flight.guarantee import GuaranteeAlarm
 from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import Phase
 from gcs.flight.plan_monitor import ImpactMonitor, PlanMonitor
+from gcs.mavlink.team_failsafe import Reaction
 from gcs.mavlink.vehicle_link import AddressConflict
 from idc_controller.geometry.shapes import Sphere
 from idc_controller.model.drag import Air
@@ -194,8 +195,8 @@ def test_more_severe_reaction_wins_and_a_milder_one_is_only_recorded():
     [(Phase.CHECK, Reaction.REFUSE), (Phase.SPOOL_UP, Reaction.DISARM), (Phase.LAND, Reaction.AUTONOMOUS_LANDING)],
 )
 def test_reaction_on_the_ground_is_to_stay_there(phase, reaction):
-    assert Failsafe.TELEMETRY_LOST.reaction.in_phase(phase) is reaction
-    assert Failsafe.DATA_LINK_LOST.reaction.in_phase(phase) is Reaction.END_CONTROL
+    assert phase.state.reaction(Failsafe.TELEMETRY_LOST.reaction) is reaction
+    assert phase.state.reaction(Failsafe.DATA_LINK_LOST.reaction) is Reaction.END_CONTROL
 
 
 def test_threshold_follows_its_setting():
