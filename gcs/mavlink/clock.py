@@ -54,6 +54,7 @@ class RemoteClock:
         """Time of its offset's last step (s, ground): it was set, or datagrams come otherwise than before."""
         self.lag = 0.0
         """Delay (s) of the last stamp beyond the least delay of the last second."""
+        self._lags: deque[float] = deque(maxlen=settings.recent_stamps)
         self._requests: deque[int] = deque(maxlen=settings.open_requests)
         self._round_trips: list[tuple[float, float]] = []
         """Arrival and round trip of the last answers."""
@@ -85,6 +86,7 @@ class RemoteClock:
             self._lead = max(self._lead, lead)
             self._set_offset()
         self.lag = self._lead - lead
+        self._lags.append(self.lag)
         if abs(self._lead - before) > self._settings.jump:
             self.jumped_at = arrival
         if began_anew or self._lead - before > self._settings.jump:
@@ -156,6 +158,11 @@ class RemoteClock:
     def delay(self) -> float:
         """Link latency (s): half of the median round trip."""
         return self._trips.median / 2.0
+
+    @property
+    def least_lag(self) -> float:
+        """Delay (s) of the last few stamps beyond the least of the last second: of the one that came soonest."""
+        return min(self._lags, default=0.0)
 
     @property
     def spread(self) -> float:

@@ -43,6 +43,8 @@ class SetpointStream:
     def __init__(self, clock: RemoteClock, parameters: dict[str, float], settings: LinkSettings) -> None:
         self._clock, self._parameters, self._settings = clock, parameters, settings
         self._delays: deque[float] = deque(maxlen=settings.delays)
+        self._lags: deque[float] = deque(maxlen=settings.delays)
+        """Of telemetry (s), with which those delays were reported."""
         self._last_stamp = -math.inf
         self.loss = self._loss_before = 0.0
         """Share of the set-points that do not arrive, by its confirmations."""
@@ -58,10 +60,14 @@ class SetpointStream:
 
     @property
     def delay(self) -> float:
-        """Delay from sending a set-point until the vehicle flies it: by its confirmations, else by round trips."""
+        """Delay from sending a set-point until the vehicle flies it: by its confirmations, else by round trips.
+
+        Confirmations are a round trip old. Where the latency of telemetry has grown since, that of set-points has grown
+        as much, or not at all: the middle is wrong by half, which the loop bears (control/delay_margin.py).
+        """
         if len(self._delays) == self._settings.delays:
             # Round trips are worse: on a link that loses or reorders, those that arrive are not late.
-            return median(self._delays)
+            return median(self._delays) + max(self._clock.least_lag - median(self._lags), 0.0) / 2.0
         return self._clock.delay + self._onboard_period
 
     @property
@@ -84,6 +90,7 @@ class SetpointStream:
         """Take the vehicle's report of a set-point that it flew."""
         if confirmation.delay is not None:
             self._delays.append(confirmation.delay)
+            self._lags.append(self._clock.lag)
         if confirmation.late:  # nothing was lost since: the latency has grown
             self.loss = self._loss_before
         elif (flown := confirmation.as_sent) is not None:

@@ -13,6 +13,7 @@ class ClockSettings(SettingsTable):
     slice: float = 0.25  # s; of which only the stamp that came soonest is kept
     slices: int = 4  # such slices kept: few, because a simulated world that stalled does not catch up
     recent_round_trips: int = 4  # round trips whose longest bounds the latency
+    recent_stamps: int = 3  # stamps that all come late where the latency has grown
     queue_window: float = 1.25  # s; of datagrams whose latencies are compared with those of a queue
     open_requests: int = 100  # TIMESYNC requests that may still be answered
     bounds: int = 1000  # bounds of the offset kept until they are looked at, once a control step
