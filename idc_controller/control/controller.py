@@ -84,7 +84,6 @@ class IntegratedDecisionController:
         self.load = LoadAdaptation(model, settings)
         self._ground_controller = GroundController(model, settings.period, settings.ground)
         self._hover = self.parameters.hover_thrust
-        self._least_lift = settings.least_lift * self.parameters.m * self.parameters.g
         self._tracked: PayloadTrajectory | None = None
         self._error_limits = settings.position_error_limit, settings.velocity_error_limit
         """Position (m) and velocity error (m/s) of the payload that are answered at most."""
@@ -158,7 +157,7 @@ class IntegratedDecisionController:
         else:
             output = self.tracker.track(error, stages)
             tracked = self._stopwatch()
-            u = setpoints(output.delta_u, flat.u[-1], self._hover, self._least_lift)
+            u = setpoints(output.delta_u, flat.u[-1], self._hover)
             u = self.safety.correct(estimate.time, u, estimate)
         return Decision(
             time=estimate.time,

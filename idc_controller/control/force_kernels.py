@@ -96,7 +96,7 @@ def fill_input_bounds(bounds: Array1, u: Array2, stages: Indices1, hover: Array1
         u: tilts and thrusts of the reference at all stages (K, 3 N).
         stages: those whose bounds are wanted (M,).
         hover: thrusts in hover (N,) (N).
-        lower, upper: limits in components of force (3 N,).
+        lower, upper: limits of upward forces (N), and of level ones over the reference's thrust (3 N,).
     """
     number, inputs = len(hover), u.shape[1]
     for k in range(len(stages)):
@@ -104,28 +104,25 @@ def fill_input_bounds(bounds: Array1, u: Array2, stages: Indices1, hover: Array1
         for i in range(number):
             n_x, n_y, f = u[stages[k], 2 * i], u[stages[k], 2 * i + 1], u[stages[k], 2 * number + i]
             x, y, z = 2 * i, 2 * i + 1, 2 * number + i
-            north, east, upward = n_x * (f / hover[i]), n_y * (f / hover[i]), f * _cosine(n_x, n_y)
-            above[x], above[y], above[z] = upper[x] - north, upper[y] - east, upper[z] - upward
-            below[x], below[y], below[z] = north - lower[x], east - lower[y], upward - lower[z]
+            share, upward = f / hover[i], f * _cosine(n_x, n_y)
+            above[x], above[y], above[z] = share * (upper[x] - n_x), share * (upper[y] - n_y), upper[z] - upward
+            below[x], below[y], below[z] = share * (n_x - lower[x]), share * (n_y - lower[y]), upward - lower[z]
 
 
 @kernel
-def setpoints(delta: Array1, u_reference: Array1, hover: Array1, least_lift: Array1) -> Array1:
+def setpoints(delta: Array1, u_reference: Array1, hover: Array1) -> Array1:
     """Return tilts and thrusts (3 N,) of a reference plus ``delta`` in force components.
-
-    The force points up whatever is commanded.
 
     Args:
         delta: F_xy / f_hover and -F_z less the reference's (3 N,).
         u_reference: tilts and thrusts of the reference (3 N,).
         hover: thrusts in hover (N,) (N).
-        least_lift: least upward force of each UAV (N,) (N).
     """
     number, u = len(hover), np.empty(len(delta))
     for i in range(number):
         n_x, n_y, f = u_reference[2 * i], u_reference[2 * i + 1], u_reference[2 * number + i]
         north, east = f * n_x + hover[i] * delta[2 * i], f * n_y + hover[i] * delta[2 * i + 1]
-        upward = max(f * _cosine(n_x, n_y) + delta[2 * number + i], least_lift[i])
+        upward = f * _cosine(n_x, n_y) + delta[2 * number + i]
         thrust = math.sqrt(north * north + east * east + upward * upward)
         u[2 * i], u[2 * i + 1], u[2 * number + i] = north / thrust, east / thrust, thrust
     return u

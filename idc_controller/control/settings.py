@@ -66,7 +66,8 @@ class MpcSettings(SettingsTable):
     """Table ``controller``."""
     # control steps between the stages of the prediction at which states are constrained, the first on
     constraint_interval: int = 3
-    thrust_min: float = 1.0  # N; least thrust set-point of a UAV
+    # least upward force in a UAV's set-points, over its own weight: with less the link pushes, and the UAV falls over
+    least_lift: Share = 1.0
     thrust_share_max: Share = 0.95  # largest thrust set-point, as a share of the largest thrust
     separation_share: Share = 0.425  # part of the gap between neighbouring rotor discs in hover that has to stay open
     neighbour_share: float = 1.3  # pairs of UAVs up to so many times the least distance apart in hover are neighbours
@@ -114,5 +115,3 @@ class ControllerSettings(SettingsTable):
     upright_time_constant: float = 0.5  # s; with which links come upright over a payload on the ground
     position_error_limit: float = 0.3  # m; a position error of the payload is answered as if it were at most this
     velocity_error_limit: float = 0.6  # m/s; the same of its velocity
-    # least upward force in a UAV's set-points, over its own weight: with less the link pushes, and the UAV falls over
-    least_lift: Share = 1.0

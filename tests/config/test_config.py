@@ -53,7 +53,7 @@ def test_settings_of_the_file_reach_estimator_guidance_filter_and_controller(tmp
     path = tmp_path / "system.toml"
     path.write_text(
         "[estimation.estimator]\nhistory = 0.7\n[estimation.wind]\nmemory = 7.0\n"
-        "[safety.planner]\njerk = 0.003\n[safety.filter]\nwatch = 3.0\n[control.mpc]\nthrust_min = 2.0\n"
+        "[safety.planner]\njerk = 0.003\n[safety.filter]\nwatch = 3.0\n[control.mpc]\nleast_lift = 0.9\n"
         "[avoidance]\nmargin = 0.6\n"
     )
     config = read_system(path)
@@ -66,7 +66,7 @@ def test_settings_of_the_file_reach_estimator_guidance_filter_and_controller(tmp
     assert controller.load.wind.settings.memory == 7.0
     assert (safety.settings.jerk, safety.settings.margin, safety.filter_settings.watch) == (0.003, 0.6, 3.0)
     assert isinstance(controller.tracker, ModelPredictiveController)
-    assert controller.tracker.settings.thrust_min == 2.0
+    assert controller.tracker.settings.least_lift == 0.9
 
 
 def test_system_is_read_back_from_its_own_tables(tmp_path: Path) -> None:

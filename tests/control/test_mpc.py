@@ -106,7 +106,7 @@ def test_hard_input_limits_are_kept_whatever_the_error():
         u = in_force_components(STAGES.u[0]) + output.delta_u
         assert np.all(np.abs(u[LAYOUT.n_setpoint]) <= np.tan(s.tuning.uav_tilt_limit) + 1e-5)
         assert np.all(u[LAYOUT.f_setpoint] <= 0.95 * p.thrust_max + 1e-4)
-        assert np.all(u[LAYOUT.f_setpoint] >= s.thrust_min - 1e-4)
+        assert np.all(u[LAYOUT.f_setpoint] >= s.least_lift * p.m * p.g - 1e-4)
 
 
 @pytest.mark.parametrize(
@@ -127,7 +127,10 @@ def test_mpc_marks_step_and_cuts_move_to_both_input_limits_when_qp_has_no_soluti
     assert output.infeasible
     u = in_force_components(STAGES.u[0])
     tilt, thrust_max = np.full(8, np.tan(s.tuning.uav_tilt_limit)), s.thrust_share_max * MODEL.parameters.thrust_max
-    lower, upper = np.append(-tilt, [s.thrust_min] * 4), np.append(tilt, [thrust_max] * 4)
+    lower, upper = (
+        np.append(-tilt, s.least_lift * MODEL.parameters.m * MODEL.parameters.g),
+        np.append(tilt, [thrust_max] * 4),
+    )
     assert u + output.delta_u == pytest.approx(np.clip(u + free_move(error_of(**parts)), lower, upper), abs=1e-6)
     assert not mpc.track(error_of(**parts), STAGES).infeasible
 
@@ -187,11 +190,7 @@ def test_force_components_are_inverted_exactly():
     u = np.concatenate([0.2 * rng.standard_normal(8), hover + rng.standard_normal(4)])
     target = np.concatenate([0.2 * rng.standard_normal(8), hover + rng.standard_normal(4)])
     delta = in_force_components(target) - in_force_components(u)
-    assert setpoints(delta, u, hover, 0.05 * hover) == pytest.approx(target)
-    least = MODEL.parameters.m * MODEL.parameters.g
-    lowered = setpoints(delta - np.repeat([0.0, 1e3], [8, 4]), u, hover, least)
-    up = lowered[8:] * np.sqrt(1.0 - np.square(lowered[:8]).reshape(4, 2).sum(axis=1))
-    assert up == pytest.approx(least)  # links never push
+    assert setpoints(delta, u, hover) == pytest.approx(target)
     x = np.zeros(LAYOUT.size)
     x[LAYOUT.n], x[LAYOUT.f] = u[:8], u[8:]
     error = tracking_error(x, np.zeros(LAYOUT.size), hover, LAYOUT.n.start, np.inf, np.inf)

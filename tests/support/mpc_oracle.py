@@ -102,7 +102,7 @@ def optimal_moves(model, settings, blocks, error, height):
                 h.append(bounds - rows @ free)
         tilt = np.full(2 * m // 3, np.tan(np.radians(settings.tuning.uav_tilt_limit_deg)))
         most = np.concatenate([tilt, settings.thrust_share_max * p.thrust_max - p.hover_thrust])
-        least = np.concatenate([-tilt, settings.thrust_min - p.hover_thrust])
+        least = np.concatenate([-tilt, settings.least_lift * p.m * p.g - p.hover_thrust])
         G += [np.hstack([own, np.zeros((m, number))]), np.hstack([-own, np.zeros((m, number))])]
         h += [most, -least]
     G.append(np.hstack([np.zeros((number, moves * m)), -np.eye(number)]))

@@ -13,11 +13,11 @@ class InputLimits:
 
     def __init__(self, model: LinearModel, settings: MpcSettings) -> None:
         self._hover = model.parameters.hover_thrust
-        N = model.layout.number_of_uavs
+        N, p = model.layout.number_of_uavs, model.parameters
         tilt = np.full(2 * N, np.tan(settings.tuning.uav_tilt_limit))
-        thrust_max = settings.thrust_share_max * model.parameters.thrust_max
+        thrust_max = settings.thrust_share_max * p.thrust_max
         self._upper = np.concatenate([tilt, np.full(N, thrust_max)])
-        self._lower = np.concatenate([-tilt, np.full(N, settings.thrust_min)])
+        self._lower = np.concatenate([-tilt, settings.least_lift * p.m * p.g])
         self.G = np.vstack([np.eye(3 * N), -np.eye(3 * N)])
         """(6 N, 3 N)"""
 
