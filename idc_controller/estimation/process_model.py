@@ -6,6 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.estimation.dynamics_kernels import Bodies, nonlinear_part
 from idc_controller.estimation.health.attitude_steps import AttitudeStep, step_response
 from idc_controller.estimation.kalman_filter import SparseRows, Transition
 from idc_controller.estimation.propagation_kernels import add_variances
@@ -49,6 +50,12 @@ class ProcessModel:
         self.mass = self.size - 1
         self.force, self.uav_force = slice(n, n + 3), slice(n + 3, self.mass)
         self.forces = slice(n, self.mass)
+        p, layout = model.parameters, self.layout
+        moving = np.r_[layout.v_0, layout.omega, layout.s_dot]
+        self._moving = np.hstack([model.A[moving], model.B_d[moving], np.zeros((len(moving), 1))])
+        self._moved = np.ascontiguousarray(model.B_d[moving, :3])
+        J_0, places, l, m = (np.ascontiguousarray(part, dtype=float) for part in (p.J_0, p.p, p.l, p.m))
+        self._bodies = Bodies(float(p.m_0), J_0, places, l, m, float(p.g))
         self._uav_columns = self._columns_of_uavs()
         self._noise = self._noise_of(densities)
         self.transition = lru_cache(maxsize=256)(self._discretised)
@@ -68,6 +75,15 @@ class ProcessModel:
         It acts along g e3 - a, which follows the manoeuvre (m/s2).
         """
         return np.array([0.0, 0.0, self.model.parameters.g]) - acceleration
+
+    def nonlinear_part(self, error: Array, nominal: Array, direction: Array, interval_us: int) -> Array:
+        """Return what the linear model of an ``error`` (n,) leaves out of its change (n,) over an interval (us).
+
+        ``nominal``: state of the reference (n,). ``direction``: see :meth:`force_of_mass`.
+        """
+        return nonlinear_part(
+            error, nominal, self._moving, self._moved, direction, self._bodies, interval_us * 1e-6
+        )  # fmt: skip
 
     def add_per_vehicle_noise(self, P: Array, measured: Indices) -> None:
         """Add variances to the disturbance forces in ``P`` (n, n) of the UAVs ``measured`` (K,), between samples.
