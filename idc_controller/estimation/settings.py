@@ -17,6 +17,7 @@ class ProcessNoiseSettings(SettingsTable):
     uav_jerk: float = 0.85  # 1/s3/sqrt(s); noise of the third derivative of a UAV's thrust direction
     thrust: float = 0.012  # N/s/sqrt(s); noise of the derivative of a UAV's thrust
     force: float = 0.05  # N/sqrt(s); random walk of the disturbance force on the payload
+    uav_drag_area: float = 0.03  # m2; drag coefficient times area of a UAV, on which a gust acts as on the payload
     uav_force: float = 0.01  # N/sqrt(s); random walk of the disturbance force common to the UAVs
     per_vehicle_force: float = 0.01  # N; change of each UAV's disturbance force between samples
     mass: float = 0.005  # kg/sqrt(s); random walk of the payload's mass
