@@ -212,6 +212,7 @@ class GroundedLinksSettings(SettingsTable):
     link_acceleration: float = 0.1  # 1/s2/sqrt(s); gusts, and a payload that slides
     thrust_error_walk: float = 0.2  # rad/sqrt(s); an attitude that becomes wrong by 0.1 rad is to be found in 0.25 s
     error_time_constant: float = 0.5  # s; of what the UAVs have in common of these errors
+    error_min: float = 0.04  # rad; three standard deviations of what is found of a UAV's own beside that of the air
     position_gap: float = 0.2  # s; without a position, after which a UAV has that, too
     uav_jerk: float = 20.0  # 1/s3/sqrt(s); of thrust directions: some set-points are lost
     position_noise_min: float = 0.01  # m; least standard deviations of the measurements: the model's own errors
