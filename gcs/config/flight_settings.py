@@ -106,6 +106,7 @@ class TakeoffLandingSettings(SettingsTable):
     # m/s; of a payload at rest on the ground: six standard deviations of its unit's velocity
     rest_speed: float = 0.05
     lean_time: float = 1.0  # s; a link that moves on at its rate must be upright for so long, too
+    lean_time_unlocated: float = 3.0  # s; the same of one without a position, whose rate is known less exactly
     upright_timeout: float = 5.0  # s; for links to come upright before the thrust fades
     touch_depth: float = 0.06  # m; of the reference below a payload that is on the ground
     touch_speed: float = 0.05  # m/s; vertical, below which it is at rest

@@ -86,15 +86,16 @@ class ControlLoop:
         """Begin to estimate links over a ``payload`` (12,) on the ground: upright ones, or those of an ``estimate``.
 
         What the UAVs have of their own of the disturbance forces in the air is an error of their thrusts' directions.
+        What all have is the wind's drag, as it was learnt before the ground could push the payload aside.
         """
         p, layout = self.controller.parameters, self.controller.layout
         x, drag, thrusts = np.zeros((6, p.number_of_uavs, 2)), np.zeros(2), np.zeros(p.number_of_uavs)
         if estimate is not None:
             parts = (layout.s, layout.s_dot, layout.n, layout.n_dot, layout.n_acc)
             forces, thrusts = estimate.uav_force[:, :2], p.hover_thrust
-            drag = np.median(forces, axis=0)
+            drag = np.median(self.controller.load.on_uavs, axis=0)[:2]
             x[[S, S_DOT, N, N_DOT, N_ACC]] = [estimate.x[part].reshape(-1, 2) for part in parts]
-            x[OFF] = (forces - drag) / thrusts[:, None]
+            x[OFF] = (forces - np.median(forces, axis=0)) / thrusts[:, None]
         unlocated = self.estimator.health.unusable_poses(Position, time) - {PAYLOAD}
         self.links.start(time, payload, x, thrusts, drag, unlocated)
 

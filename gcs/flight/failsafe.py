@@ -136,7 +136,8 @@ class Failsafe(AlarmCode):
         "a vehicle pulls aside, as if its attitude were wrong on board by more than {attitude_error} rad, with a "
         "probability of {attitude_certainty}")
     WIND_EXCEEDED = (Check.ESTIMATE, in_air.wind_exceeded, Reaction.AUTONOMOUS_LANDING, "wait for less wind",
-        "the drag of the wind on the payload at rest is estimated as more than {wind_drag:.0%} of its weight")
+        "the drag of the wind on the payload at rest is estimated as more than {wind_drag:.0%} of its weight, and "
+        "positions are not lost as in `positions_lost`")
     CLIMB_STALLED = (Check.ESTIMATE, in_air.climb_stalled, Reaction.BRAKE_AND_LAND,
         "check the load, and what holds it",
         "the payload is still on the ground, below its plan by more than the margin and the bound on its deviation")

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from gcs.flight.condition import Moment, System, Trigger
+from gcs.flight.link_conditions import positions_lost
 from gcs.flight.phase import Phase
 
 
@@ -77,7 +78,8 @@ def wind_exceeded(system: System, moment: Moment) -> Trigger | None:
     # Both as they are learnt: for a moment a payload that has lost a part of its mass seems to weigh less than it does.
     weight, limit = system.load.payload_mass * system.team.parameters.g, system.settings.wind_drag
     drag = math.hypot(*air.on_payload(np.zeros(3))[:2])
-    if drag <= limit * max(weight, 0.0):
+    # Vehicles that do not know where they are hold nothing against the wind: the ground goes on.
+    if drag <= limit * max(weight, 0.0) or positions_lost(system, moment):
         return None
     return Trigger(f"the wind pushes the payload aside by {drag:.1f} N, of {weight:.1f} N weight (limit {limit:.0%})")
 

@@ -103,7 +103,8 @@ class Touchdown:
         if unloading > s.carried_share:
             return np.asarray(standing)
         if self._upright_at is None:
-            lean = max(np.abs(links.x[S]).max(), s.lean_time * np.abs(links.x[S_DOT]).max())
+            lasting = np.where(links.located, s.lean_time, s.lean_time_unlocated)
+            lean = max(np.abs(links.x[S]).max(), (lasting * np.abs(links.x[S_DOT]).max(axis=1)).max())
             if (lean > s.upright_lean or not at_rest) and time - self._begin < s.upright_timeout:
                 return np.asarray(standing)
             self._upright_at = time

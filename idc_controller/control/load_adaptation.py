@@ -37,6 +37,11 @@ class LoadAdaptation:
         load = self.estimate
         return load.mass + float(load.force[2]) / self.parameters.g
 
+    @property
+    def on_uavs(self) -> Array:
+        """Forces on the UAVs (N, 3) (N) at rest, as they are learnt."""
+        return self.estimate.uav_force + _drag(self.estimate.air, np.zeros(3))[1]
+
     def take_mass(self, mass: float) -> None:
         """Take a ``mass`` (kg) of the payload at once, within its limits; the level forces stay."""
         least, most = self.settings.mass_share
@@ -62,10 +67,9 @@ class LoadAdaptation:
         """Let links that lean against the wind come upright: the ground holds the payload, whose weight stays."""
         share = self.settings.period / self.settings.upright_time_constant
         load = self.estimate
-        drag, uav_drag = _drag(load.air, np.zeros(3))
-        force = load.force + drag
+        force = load.force + _drag(load.air, np.zeros(3))[0]
         force[:2] *= 1.0 - share
-        self.estimate = Load(load.mass, force, load.uav_force + uav_drag)
+        self.estimate = Load(load.mass, force, self.on_uavs)
 
     def learn(self, estimate: Estimate) -> None:
         """Follow the disturbance forces and the mass excess of ``estimate``."""

@@ -1,9 +1,10 @@
 """State estimator: the state now, from measurements that are late, repeated, out of order or missing.
 
 A Kalman filter on the linear model, run on the error about the exact flat reference, so that the manoeuvre itself is no
-disturbance to it. Measurements are applied in order of their time of validity; a late one returns the filter to before
-it, and all later ones are applied again. Disturbance forces on the payload and on each UAV and an excess of the
-payload's mass are estimated along with the state, so that none of them leaves an offset.
+disturbance to it; what the linear model leaves out of the error is added to the prediction. Measurements are applied in
+order of their time of validity; a late one returns the filter to before it, and all later ones are applied again.
+Disturbance forces on the payload and on each UAV and an excess of the payload's mass are estimated along with the
+state, so that none of them leaves an offset.
 """
 
 import bisect

@@ -7,8 +7,8 @@ The ground holds the payload, so the model of flight does not apply: each UAV is
 with the link's tilt s and the thrust direction n as in :mod:`idc_controller.model.linear`, the thrust f, the drag w of
 the wind, and b what the thrust is off the attitude: by an attitude that is wrong on board, and by what else of its own
 pulls the UAV aside. One Kalman filter a UAV takes its positions and attitudes, about the payload as its unit reports
-it. A UAV without a position goes on by its attitudes and set-points, and by its own part of the b that was found
-before; the wind's part is that of the others.
+it. A UAV without a position goes on by its attitudes and set-points, by the payload's motion, and by its own part of
+the b that was found before; the wind's part is that of the others.
 """
 
 import math
@@ -65,8 +65,9 @@ class _Payload:
     def __init__(self, time: float, x: Array, settings: GroundedLinksSettings) -> None:
         """``x``: position, velocity, Euler angles and body rates (12,) at ``time`` (s)."""
         self._time, self._settings = time, settings
-        self._position, self._velocity, self.velocity = x[:3].copy(), np.zeros(3), np.zeros(3)
-        self._turn, self._rates = rotation_from_quaternion(quaternion_from_euler(*x[6:9])), np.zeros(3)
+        self._position, self.velocity, self._rates = x[:3].copy(), x[3:6].copy(), x[9:12].copy()
+        self._velocity = np.clip(self.velocity, -settings.payload_speed_max, settings.payload_speed_max)
+        self._turn = rotation_from_quaternion(quaternion_from_euler(*x[6:9]))
 
     def add(self, measurement: Measurement) -> None:
         """Take a measurement of its unit."""
@@ -153,22 +154,28 @@ class GroundedLinks:
             commands.popleft()
 
     def _share_errors(self, step: float) -> None:
-        """Let UAVs without a position have what the others have in common: the wind, as it is now."""
+        """Let UAVs without a position have what the others have in common: the wind, as it is now.
+
+        Where no UAV has a position that stays as it was. Their own is what it was in the air, unless another one was
+        found that is more than noise.
+        """
         s, errors, located = self._settings, self._x[:, OFF], self._is_located
-        if not located.any():
-            return
-        share = 1.0 - math.exp(-step / s.error_time_constant)
-        # Without offsets: the median of a few of which one is far off is not in the middle of the others.
-        common = np.median(errors[located] - self._offsets[located], axis=0)
-        self._common = self._common + share * (common - self._common)
-        self._own[located] += share * (errors[located] - self._common - self._own[located])
-        errors[~located] = self._own[~located] + self._common
+        if located.any():
+            share = 1.0 - math.exp(-step / s.error_time_constant)
+            # Without offsets: the median of a few of which one is far off is not in the middle of the others.
+            common = np.median(errors[located] - self._offsets[located], axis=0)
+            self._common = self._common + share * (common - self._common)
+            self._own[located] += share * (errors[located] - self._common - self._own[located])
+        found = np.linalg.norm(self._own - self._offsets, axis=1, keepdims=True) > s.error_min
+        errors[~located] = np.where(found, self._own, self._offsets)[~located] + self._common
 
     def add(self, measurement: Measurement) -> None:
         """Take a ``measurement`` of the payload's unit, or of a UAV unless a later one was taken before."""
         i, p = measurement.source, self._parameters
         if i == PAYLOAD:
+            before = self._attachment_velocities()
             self._payload.add(measurement)
+            self._x[:, S_DOT] += (self._attachment_velocities() - before)[:, :2] / p.l[:, None]
             return
         if not self._times[i] <= measurement.time <= self._commands[-1].time + _AHEAD_MAX:
             return
@@ -185,6 +192,10 @@ class GroundedLinks:
             self._update(i, S, (position - measurement.pose)[:2] / p.l[i], self._variance[0] / p.l[i] ** 2)
         if measurement.has_motion:
             self._update(i, S_DOT, (velocity - measurement.motion)[:2] / p.l[i], self._variance[1] / p.l[i] ** 2)
+
+    def _attachment_velocities(self) -> Array:
+        """Return the velocities (N, 3) (m/s) of the attachment points: links lean as the payload slides."""
+        return np.array([self._payload.attachment(place)[1] for place in self._parameters.p])
 
     def take_attitude_step(self, step: AttitudeStep) -> None:
         """Take a ``step`` of a UAV's attitude, by which its thrust is off its attitude from now on."""

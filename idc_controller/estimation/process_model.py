@@ -1,15 +1,18 @@
 """Process model of the filter: the linear model, with its disturbances as part of the state."""
 
+import math
 from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
 
 from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.estimation.dynamics_kernels import Bodies, nonlinear_part
 from idc_controller.estimation.health.attitude_steps import AttitudeStep, step_response
 from idc_controller.estimation.kalman_filter import SparseRows, Transition
 from idc_controller.estimation.propagation_kernels import add_variances
 from idc_controller.estimation.settings import CovarianceResetSettings, InitialCovarianceSettings, ProcessNoiseSettings
+from idc_controller.model.drag import BOX_DRAG
 from idc_controller.model.linear import LinearModel
 from idc_controller.trajectory.flatness import Load
 
@@ -49,6 +52,15 @@ class ProcessModel:
         self.mass = self.size - 1
         self.force, self.uav_force = slice(n, n + 3), slice(n + 3, self.mass)
         self.forces = slice(n, self.mass)
+        p, layout = model.parameters, self.layout
+        moving = np.r_[layout.v_0, layout.omega, layout.s_dot]
+        self._moving = np.hstack([model.A[moving], model.B_d[moving], np.zeros((len(moving), 1))])
+        self._moved = np.ascontiguousarray(model.B_d[moving, :3])
+        J_0, places, l, m = (np.ascontiguousarray(part, dtype=float) for part in (p.J_0, p.p, p.l, p.m))
+        self._bodies = Bodies(float(p.m_0), J_0, places, l, m, float(p.g))
+        payload_area = BOX_DRAG * 4.0 / math.pi * float(np.mean(p.payload.areas[:2]))  # mean of all directions of wind
+        self.drag_share = densities.uav_drag_area / payload_area
+        """Drag of a UAV over the payload's."""
         self._uav_columns = self._columns_of_uavs()
         self._noise = self._noise_of(densities)
         self.transition = lru_cache(maxsize=256)(self._discretised)
@@ -68,6 +80,15 @@ class ProcessModel:
         It acts along g e3 - a, which follows the manoeuvre (m/s2).
         """
         return np.array([0.0, 0.0, self.model.parameters.g]) - acceleration
+
+    def nonlinear_part(self, error: Array, nominal: Array, direction: Array, interval_us: int) -> Array:
+        """Return what the linear model of an ``error`` (n,) leaves out of its change (n,) over an interval (us).
+
+        ``nominal``: state of the reference (n,). ``direction``: see :meth:`force_of_mass`.
+        """
+        return nonlinear_part(
+            error, nominal, self._moving, self._moved, direction, self._bodies, interval_us * 1e-6
+        )  # fmt: skip
 
     def add_per_vehicle_noise(self, P: Array, measured: Indices) -> None:
         """Add variances to the disturbance forces in ``P`` (n, n) of the UAVs ``measured`` (K,), between samples.
@@ -101,8 +122,17 @@ class ProcessModel:
         added = np.zeros(self.size)
         added[layout.v_0], added[layout.omega] = settings.velocity**2, settings.rates**2
         added[layout.s_dot] = settings.link_rate**2
-        added[force] = np.maximum(settings.force**2 - np.diag(P)[force], 0.0)
-        return np.diag(added)
+        return np.diag(added) + self._of_wind(np.maximum(settings.force**2 - np.diag(P)[force], 0.0))
+
+    def _of_wind(self, variances: Array) -> Array:
+        """Return the covariance (n, n) of a force on the payload with ``variances`` (3,) that the wind makes.
+
+        The same wind pushes the UAVs, each by its own drag area.
+        """
+        N, carried = self.layout.number_of_uavs, np.zeros((self.size, 3))
+        carried[self.force] = np.eye(3)
+        carried[self.uav_force, :2] = self.drag_share * np.tile(np.eye(2), (N, 1))
+        return np.asarray(carried * variances @ carried.T)
 
     def attitude_step(self, step: AttitudeStep) -> tuple[Array, Array]:
         """Return what a ``step`` adds to the state (n,) and to its covariance (n, n) at its first sample.
@@ -173,9 +203,8 @@ class ProcessModel:
         density[layout.n_acc] = p.uav_jerk
         density[layout.f] = p.thrust
         density[self.mass] = p.mass
-        of_forces = np.zeros((self.size, self.size))
-        of_forces[self.force, self.force] = p.force**2 * np.eye(3)
-        of_forces[self.uav_force, self.uav_force] = self.uav_forces(p.uav_force, 0.0)
+        of_forces = self._of_wind(np.full(3, p.force**2))
+        of_forces[self.uav_force, self.uav_force] += self.uav_forces(p.uav_force, 0.0)
         A = np.zeros((self.size, self.size))
         A[:n, :n], A[:n, self.forces] = self.model.A, self.model.B_d
         A[:n, self.mass] = self.model.B_d[:, 2] * self.model.parameters.g

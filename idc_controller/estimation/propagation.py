@@ -62,6 +62,10 @@ class PropagationInterval:
         u = self.setpoints[k].u
         return np.zeros(self.u.shape[1]) if u is None else u - self.u[k]
 
+    def nonlinear_part(self, k: int, error: Array) -> Array:
+        """Return what the linear model leaves out (n,) of how an ``error`` (n,) changes from time ``k`` to the next."""
+        return self._process.nonlinear_part(error, self.nominal[k], self.force_of_mass[k], self.durations[k])
+
     def defect(self, k: int) -> Array:
         """Return what the attitudes and thrusts of the reference lack to follow from its set-points (n,).
 
@@ -97,18 +101,20 @@ class ErrorStateFilter(StructuredKalmanFilter):
         """Propagate from time ``k`` to the next under the set-points in force; ``force_scale``: of process noise."""
         _, change, probability = interval.setpoints[k]
         duration = interval.durations[k]
+        nonlinear = interval.nonlinear_part(k, self.x)
         self.propagate(
             self.process.transition(duration), interval.force_of_mass[k], interval.input(k),
             self.process.noise(duration, force_scale), _NONE if change is None else change, probability,
         )  # fmt: skip
-        self.x = self.x + interval.defect(k)
+        self.x = self.x + interval.defect(k) + nonlinear
 
     def state_ahead(self, interval: PropagationInterval, k: int) -> Array:
         """Return the absolute state (n,) at the end of the interval from that at time ``k``, which remains."""
         x = self.x
         for later in range(k, len(interval.times) - 1):
             transition = self.process.transition(interval.durations[later])
-            x = transition.state(x, interval.force_of_mass[later], interval.input(later)) + interval.defect(later)
+            left_out = interval.defect(later) + interval.nonlinear_part(later, x)
+            x = transition.state(x, interval.force_of_mass[later], interval.input(later)) + left_out
         return np.asarray(x + self._nominal[-1])
 
     @property

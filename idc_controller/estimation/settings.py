@@ -17,6 +17,7 @@ class ProcessNoiseSettings(SettingsTable):
     uav_jerk: float = 0.85  # 1/s3/sqrt(s); noise of the third derivative of a UAV's thrust direction
     thrust: float = 0.012  # N/s/sqrt(s); noise of the derivative of a UAV's thrust
     force: float = 0.05  # N/sqrt(s); random walk of the disturbance force on the payload
+    uav_drag_area: float = 0.03  # m2; drag coefficient times area of a UAV, on which a gust acts as on the payload
     uav_force: float = 0.01  # N/sqrt(s); random walk of the disturbance force common to the UAVs
     per_vehicle_force: float = 0.01  # N; change of each UAV's disturbance force between samples
     mass: float = 0.005  # kg/sqrt(s); random walk of the payload's mass
@@ -211,6 +212,7 @@ class GroundedLinksSettings(SettingsTable):
     link_acceleration: float = 0.1  # 1/s2/sqrt(s); gusts, and a payload that slides
     thrust_error_walk: float = 0.2  # rad/sqrt(s); an attitude that becomes wrong by 0.1 rad is to be found in 0.25 s
     error_time_constant: float = 0.5  # s; of what the UAVs have in common of these errors
+    error_min: float = 0.04  # rad; three standard deviations of what is found of a UAV's own beside that of the air
     position_gap: float = 0.2  # s; without a position, after which a UAV has that, too
     uav_jerk: float = 20.0  # 1/s3/sqrt(s); of thrust directions: some set-points are lost
     position_noise_min: float = 0.01  # m; least standard deviations of the measurements: the model's own errors

@@ -16,6 +16,7 @@ MODEL = LinearModel(read_system().parameters())
 P = MODEL.parameters
 PERIOD, STEP, TELEMETRY = 0.05, 0.002, 0.04  # s
 SHARE = 0.6  # of the hover thrust
+FRICTION = 1.0  # m/s2; with which a payload that slides comes to rest
 REFERENCE = SimpleNamespace(x=np.zeros((1, MODEL.layout.size)), u=np.zeros((1, MODEL.layout.inputs)))
 REST = np.zeros(12)
 
@@ -23,29 +24,34 @@ REST = np.zeros(12)
 class Pendulums:
     """Four UAVs on their links over a payload at rest, north only, with the estimator and the controller."""
 
-    def __init__(self, lean=0.0, wrong=0.0, drag=0.0, latency=0.0, seed=1):
+    def __init__(self, lean=0.0, wrong=0.0, drag=0.0, latency=0.0, sliding=0.0, seed=1):
         self.wrong, self.drag, self.latency = np.array([wrong, 0.0, 0.0, 0.0]), drag, latency
         self.rng, self.time = np.random.default_rng(seed), 0.0
+        self.sliding, self.slid = sliding, 0.0  # the payload's velocity (m/s) and way (m)
         self.thrust = SHARE * P.hover_thrust
         self.x = np.zeros((5, 4))  # s, s', n, n', n''
         self.x[0] = lean
         self.links, self.controller = GroundedLinks(P), GroundController(MODEL, PERIOD)
         start = np.zeros((6, 4, 2))
         start[S, :, 0] = lean
-        self.links.start(0.0, REST, start, self.thrust, np.array([drag, 0.0]))
+        payload = REST.copy()
+        payload[3] = sliding
+        self.links.start(0.0, payload, start, self.thrust, np.array([drag, 0.0]))
         self.commands, self.waiting, self.leans, self.states = [(0.0, np.zeros((4, 2)))], [], [], None
 
     def measure(self, lost):
+        along, velocity_along = np.array([self.slid, 0.0, 0.0]), np.array([self.sliding, 0.0, 0.0])
         for i in range(4):
             above = np.array([-P.l[i] * self.x[0, i], 0.0, -P.l[i]])
-            place = P.p[i] + above + self.rng.normal(0.0, 0.02, 3)
-            velocity = np.array([-P.l[i] * self.x[1, i], 0.0, 0.0]) + self.rng.normal(0.0, 0.02, 3)
+            place = along + P.p[i] + above + self.rng.normal(0.0, 0.02, 3)
+            velocity = velocity_along - [P.l[i] * self.x[1, i], 0.0, 0.0] + self.rng.normal(0.0, 0.02, 3)
             pitch = -self.x[2, i] + self.rng.normal(0.0, 0.0035)
             samples = [Attitude(self.time, i, quaternion_from_euler(0.0, pitch, 0.0), np.zeros(3))]
             if i not in lost:
                 samples.append(Position(self.time, i, place, velocity))
             self.waiting += [(self.time + self.latency, sample) for sample in samples]
-        unit = Position(self.time, PAYLOAD, self.rng.normal(0.0, 0.02, 3), self.rng.normal(0.0, 0.008, 3))
+        place, velocity = along + self.rng.normal(0.0, 0.02, 3), velocity_along + self.rng.normal(0.0, 0.008, 3)
+        unit = Position(self.time, PAYLOAD, place, velocity)
         self.waiting.append((self.time + self.latency, unit))
 
     def control(self):
@@ -68,7 +74,10 @@ class Pendulums:
             s, s_dot, n, n_dot, n_acc = self.x
             pull = (self.thrust - P.m * P.g) * s + self.thrust * (n + self.wrong) + self.drag
             turn = (P.attitude_kp * (tilts - n) - P.attitude_kd * n_dot - n_acc) / P.motor_time_constant
-            self.x = self.x + STEP * np.array([s_dot, -pull / (P.m * P.l), n_dot, n_acc, turn])
+            slower = np.clip(-self.sliding, -FRICTION * STEP, FRICTION * STEP)
+            s_dot_change = slower / P.l - STEP * pull / (P.m * P.l)
+            self.x = self.x + np.array([STEP * s_dot, s_dot_change, STEP * n_dot, STEP * n_acc, STEP * turn])
+            self.slid, self.sliding = self.slid + STEP * self.sliding, self.sliding + slower
             self.time += STEP
             self.leans.append(np.abs(self.x[0]).max())
         return self
@@ -93,12 +102,26 @@ def test_link_without_a_position_stays_upright_by_the_error_that_was_found_befor
     assert max(team.leans) < 0.1
 
 
+def test_errors_that_were_found_last_without_the_noise_hold_where_all_positions_are_lost():
+    team = Pendulums(wrong=0.1).fly(2.0)
+    team.fly(0.5, lost=(0, 1, 2, 3))
+    assert team.states.x[OFF, 0] == pytest.approx([0.1, 0.0], abs=0.03)
+    assert np.ptp(team.states.x[OFF, 1:], axis=0).max() < 1e-3
+
+
 def test_link_without_a_position_stays_upright_in_wind_that_the_others_find():
     team = Pendulums().fly(0.3, lost=(1,))
     team.drag = 0.5
     team.fly(4.0, lost=(1,))
     assert team.states.x[OFF, 1, 0] == pytest.approx(0.5 / team.thrust[1], abs=0.03)
     assert max(team.leans) < 0.2 and np.abs(team.x[1]).max() < 0.15
+
+
+def test_links_without_positions_lean_as_the_payload_slides_and_come_upright():
+    team = Pendulums(sliding=0.5).fly(0.7, lost=(0, 1, 2, 3))
+    assert team.states.x[S, :, 0] == pytest.approx(team.x[0], abs=0.01) and team.x[0].max() < -0.03
+    team.fly(3.3, lost=(0, 1, 2, 3))
+    assert max(team.leans[-100:]) < 0.03
 
 
 def test_states_follow_the_uavs_and_outliers_do_not_move_them():

@@ -23,6 +23,7 @@ from idc_controller.estimation.process_model import ProcessModel
 from idc_controller.estimation.propagation_kernels import about_reference
 from idc_controller.estimation.settings import EstimatorSettings, ProcessNoiseSettings
 from idc_controller.estimation.update_kernels import gated, mean_products
+from idc_controller.model.drag import AIR_DENSITY, drag_coefficients, payload_drag
 from idc_controller.model.linear import LinearModel
 from idc_controller.rotations import euler_from_quaternion, rotation_from_quaternion
 from idc_controller.trajectory.flatness import Load, flat_reference
@@ -88,9 +89,13 @@ def van_loan(process, densities, interval_us, force_scale):
     sigma, A = np.zeros(m), np.zeros((m, m))
     sigma[layout.v_0], sigma[layout.omega] = p.payload_acceleration, p.payload_angular_acceleration
     sigma[layout.s_dot], sigma[layout.n_acc], sigma[layout.f] = p.link_acceleration, p.uav_jerk, p.thrust
-    sigma[process.force], sigma[process.mass] = force_scale * p.force, p.mass
+    sigma[process.mass] = p.mass
     density, n = np.diag(sigma**2), layout.size
     density[process.uav_force, process.uav_force] = process.uav_forces(force_scale * p.uav_force, 0.0)
+    wind = np.zeros((m, 3))  # of one newton on the payload
+    wind[process.force] = np.eye(3)
+    wind[process.uav_force, :2] = process.drag_share * np.tile(np.eye(2), (layout.number_of_uavs, 1))
+    density += (force_scale * p.force) ** 2 * wind @ wind.T
     A[:n, :n], A[:n, process.forces] = process.model.A, process.model.B_d
     A[:n, process.mass] = process.model.B_d[:, 2] * g
     big = expm(np.block([[-A, density], [np.zeros((m, m)), A.T]]) * interval_us * 1e-6)
@@ -314,6 +319,17 @@ def test_noise_between_vehicles_goes_to_both_axes_of_the_force_on_each_that_is_m
     forces = expected[process.uav_force].reshape(-1, 2)
     forces[[0, 2]] = 0.3**2
     np.testing.assert_array_equal(P, np.diag(expected))
+
+
+def test_wind_that_is_found_on_the_payload_is_taken_on_the_uavs_by_their_areas():
+    model = LinearModel(read_system(MISSIONS / "system.toml").parameters())
+    process, settings = ProcessModel(model, ProcessNoiseSettings()), EstimatorSettings().reset
+    P = process.covariance_reset(np.zeros((process.size, process.size)), settings)
+    gain = P[process.uav_force, process.force] / settings.force**2  # of a force on the payload that is measured
+    speed = np.array([3.0, 4.0, 0.0])
+    payload = payload_drag(drag_coefficients(model.parameters.payload.areas), speed)
+    uav = 0.5 * AIR_DENSITY * 0.03 * np.linalg.norm(speed) * speed
+    assert (gain @ payload).reshape(-1, 2) == pytest.approx(np.tile(uav[:2], (4, 1)), rel=0.2)
 
 
 @pytest.mark.parametrize("vehicles", [3, 4, 6])

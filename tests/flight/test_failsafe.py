@@ -308,17 +308,33 @@ def test_touch_down_is_no_impact():
 
 
 @pytest.mark.parametrize(
-    ("share", "excess", "ends"),
-    [(None, 0.0, False), (0.9, 0.0, False), (1.1, 0.0, True), (0.9, -0.5, True), (1.1, 0.9, False)],
+    ("share", "excess", "lost", "ends"),
+    [
+        (None, 0.0, 0, False),
+        (0.9, 0.0, 0, False),
+        (1.1, 0.0, 0, True),
+        (1.1, 0.0, 1, True),
+        (1.1, 0.0, 2, False),
+        (0.9, -0.5, 0, True),
+        (1.1, 0.9, 0, False),
+    ],
 )
-def test_wind_that_pushes_the_payload_by_more_than_a_share_of_its_weight_ends_the_flight(share, excess, ends):
+def test_wind_that_pushes_the_payload_by_more_than_a_share_of_its_weight_ends_a_flight_of_vehicles_with_positions(
+    share, excess, lost, ends
+):
     p = read_system().parameters()
     air = None
     if share is not None:
         drag = share * DEFAULTS.failsafe.wind_drag * p.m_0 * p.g
         air = Air(np.array([0.0, -4.0, 0.0]), np.array([0.1, drag / 16.0, 0.1]), 0.0)
-    load = SimpleNamespace(payload_mass=p.m_0 + excess, estimate=SimpleNamespace(air=air))
-    system = SimpleNamespace(load=load, settings=DEFAULTS.failsafe, team=SimpleNamespace(parameters=p))
+    links = [link(i + 1, position_age=1.0 if i < lost else 0.0) for i in range(4)]
+    isolation = SimpleNamespace(uavs_without_position=())
+    system = SimpleNamespace(
+        load=SimpleNamespace(payload_mass=p.m_0 + excess, estimate=SimpleNamespace(air=air)),
+        settings=DEFAULTS.failsafe,
+        team=SimpleNamespace(parameters=p, links=links),
+        estimator=SimpleNamespace(health=SimpleNamespace(isolation=isolation)),
+    )
     # For a moment the estimate of a payload that has lost a part of its mass is far below its weight.
     estimate = SimpleNamespace(mass_excess=-1.0, force=np.array([5.0, 0.0, -9.0]))
     found = Failsafe.WIND_EXCEEDED.condition(system, Moment(Phase.FLY, 100.0, 100.0, estimate=estimate))

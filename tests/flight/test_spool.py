@@ -6,7 +6,7 @@ import pytest
 from gcs.config import SystemConfig
 from gcs.config.flight_settings import DEFAULTS
 from gcs.flight.spool import Touchdown
-from idc_controller.estimation.grounded_links import LinkStates, S
+from idc_controller.estimation.grounded_links import S_DOT, LinkStates, S
 from idc_controller.trajectory.trajectory import RestTrajectory
 
 SETTINGS = DEFAULTS.takeoff_landing
@@ -19,10 +19,13 @@ def touchdown():
     return Touchdown(RestTrajectory(np.zeros(3), 10.0), 0.0, 10.0, OWN, SETTINGS)
 
 
-def thrusts(spool, elapsed, lean=0.0, hover=HOVER, speed=0.0, located=True):
-    """Thrusts at ``elapsed`` (s) after touch-down with one link that leans, over a payload that slides."""
+def thrusts(spool, elapsed, lean=0.0, hover=HOVER, speed=0.0, located=True, rate=0.0):
+    """Thrusts at ``elapsed`` (s) after touch-down with one link that leans, over a payload that slides.
+
+    ``rate`` (1/s): with which the link of the last UAV moves, which is ``located`` or not.
+    """
     x = np.zeros((6, 4, 2))
-    x[S, 2, 1] = lean
+    x[S, 2, 1], x[S_DOT, 3, 0] = lean, rate
     links = LinkStates(x, hover, np.zeros(2), np.array([speed, 0.0, 0.0]), np.array([True, True, True, located]))
     return spool.thrusts(10.0 + elapsed, hover, links)
 
@@ -70,3 +73,15 @@ def test_uav_without_a_position_keeps_more_of_its_share_and_stops_with_the_other
     assert waiting[3] == pytest.approx(OWN[3] + SETTINGS.carried_share_unlocated * (HOVER[3] - OWN[3]))
     fading = np.array([thrusts(spool, 1.05 + 0.05 * k, located=False) for k in range(50)])
     assert fading[:, 3] / waiting[3] == pytest.approx(fading[:, 0] / waiting[0]) and not fading[-1].any()
+
+
+def test_link_of_a_uav_without_a_position_must_move_more_slowly_before_the_thrust_fades():
+    rate = 0.9 * SETTINGS.upright_lean / SETTINGS.lean_time
+    for located, falls in ((True, True), (False, False)):
+        spool = touchdown()
+        thrusts(spool, 1.0, located=located, rate=rate)
+        assert (thrusts(spool, 1.5, located=located, rate=rate)[0] < STANDING[0] - 1.0) == falls
+    slower = 0.9 * SETTINGS.upright_lean / SETTINGS.lean_time_unlocated
+    spool = touchdown()
+    thrusts(spool, 1.0, located=False, rate=slower)
+    assert thrusts(spool, 1.5, located=False, rate=slower)[0] < STANDING[0] - 1.0

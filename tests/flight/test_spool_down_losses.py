@@ -54,3 +54,21 @@ def test_links_stay_upright_until_the_rotors_stop_with_a_wrong_attitude_and_a_lo
         summary = flight.summary()
     assert is_set_down(summary["landing"]), summary["landing"]
     assert summary["contacts"] == 0 and summary["uav_separation_min_m"] > 0.6
+
+
+@pytest.mark.slow
+def test_payload_is_set_down_in_wind_that_rises_after_all_positions_are_lost_just_before_touch_down(tmp_path) -> None:
+    system_file(tmp_path)
+    mission = tmp_path / "hop.toml"
+    mission.write_text(
+        HOP
+        + '\n[[fault]]\nkind = "position_lost"\nstart_phase = "land"\n'
+        + '\n[[fault]]\nkind = "wind"\nrise = 0.0\nvelocity = [2.8, 2.8, 0.0]\n'
+        + 'start_phase = "land"\nstart_offset = 1.2\n'
+    )
+    with InProcessFlight(mission, tmp_path / "run", seed=3) as flight:
+        flight.fly()
+        assert flight.flight.landed
+        summary = flight.summary()
+    assert is_set_down(summary["landing"]), summary["landing"]
+    assert summary["contacts"] == 0 and summary["uav_separation_min_m"] > 0.8
