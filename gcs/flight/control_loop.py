@@ -13,7 +13,7 @@ from idc_controller.arrays import Array
 from idc_controller.control.controller import Decision, IntegratedDecisionController
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.grounded_links import N_ACC, N_DOT, OFF, S_DOT, GroundedLinks, LinkStates, N, S
-from idc_controller.estimation.measurements import PAYLOAD, Channel, Estimate, Measurement, Position
+from idc_controller.estimation.measurements import Channel, Estimate, Measurement, Position
 from idc_controller.trajectory.stop_plan import Braking, StopPlan, stop_plan
 from idc_controller.trajectory.trajectory import Trajectory
 
@@ -91,11 +91,16 @@ class ControlLoop:
         x, drag, thrusts = np.zeros((6, p.number_of_uavs, 2)), np.zeros(2), np.zeros(p.number_of_uavs)
         if estimate is not None:
             parts = (layout.s, layout.s_dot, layout.n, layout.n_dot, layout.n_acc)
-            forces, thrusts = estimate.uav_force[:, :2], p.hover_thrust
+            load = self.controller.load.estimate
+            forces, thrusts = load.uav_force[:, :2], p.hover_thrust
+            if load.air is not None:
+                forces = forces + load.air.on_uav(np.zeros(3))[:2]
             drag = np.median(forces, axis=0)
             x[[S, S_DOT, N, N_DOT, N_ACC]] = [estimate.x[part].reshape(-1, 2) for part in parts]
             x[OFF] = (forces - drag) / thrusts[:, None]
-        unlocated = self.estimator.health.unusable_poses(Position, time) - {PAYLOAD}
+        unlocated: frozenset[int] = frozenset()
+        if estimate is not None:
+            unlocated = self.estimator.health.unusable_poses(Position, time) | self.links.unlocated(time)
         self.links.start(time, payload, x, thrusts, drag, unlocated)
 
     def add_to_links(self, measurement: Measurement) -> None:

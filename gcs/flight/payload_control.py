@@ -57,8 +57,10 @@ class PayloadControl:
             if self._spool_up is not None:
                 self._spool_up.detector.add(taken)
         used = [used for taken in measurements if (used := estimator.add(taken)) is not None]
-        if not self._flown.in_air:
-            for taken in used:
+        for taken in used:
+            if self._flown.in_air:
+                self._loop.links.locate(taken)
+            else:
                 self._loop.add_to_links(taken)
         return used
 

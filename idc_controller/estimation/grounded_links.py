@@ -20,7 +20,7 @@ import numpy as np
 
 from idc_controller.arrays import Array, Mask
 from idc_controller.estimation.health.attitude_steps import AttitudeStep
-from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise, Position
 from idc_controller.estimation.settings import GroundedLinksSettings
 from idc_controller.parameters import SystemParameters
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
@@ -65,8 +65,8 @@ class _Payload:
     def __init__(self, time: float, x: Array, settings: GroundedLinksSettings) -> None:
         """``x``: position, velocity, Euler angles and body rates (12,) at ``time`` (s)."""
         self._time, self._settings = time, settings
-        self._position, self._velocity, self.velocity = x[:3].copy(), np.zeros(3), np.zeros(3)
-        self._turn, self._rates = rotation_from_quaternion(quaternion_from_euler(*x[6:9])), np.zeros(3)
+        self._position, self._velocity, self.velocity = x[:3].copy(), x[3:6].copy(), x[3:6].copy()
+        self._turn, self._rates = rotation_from_quaternion(quaternion_from_euler(*x[6:9])), x[9:12].copy()
 
     def add(self, measurement: Measurement) -> None:
         """Take a measurement of its unit."""
@@ -83,9 +83,13 @@ class _Payload:
             off = np.clip(measurement.pose - predicted, -s.payload_step_max, s.payload_step_max)
             self._time, self._position = measurement.time, predicted + s.payload_share * off
 
-    def attachment(self, place: Array) -> tuple[Array, Array]:
-        """Return position (3,) (m) and velocity (3,) (m/s) of the ``place`` (3,) in its frame."""
-        return self._position + self._turn @ place, self._velocity + self._turn @ np.cross(self._rates, place)
+    def positions(self, places: Array) -> Array:
+        """Return the positions (K, 3) (m) of ``places`` (K, 3) in its frame."""
+        return np.asarray(self._position + places @ self._turn.T)
+
+    def velocities(self, places: Array) -> Array:
+        """Return the velocities (K, 3) (m/s) of ``places`` (K, 3) in its frame."""
+        return np.asarray(self._velocity + np.cross(self._rates, places) @ self._turn.T)
 
 
 class GroundedLinks:
@@ -113,8 +117,8 @@ class GroundedLinks:
         self._drag = np.zeros(2)
         self._located = np.zeros(number)
         """Time of the last position of each UAV (s)."""
-        self._common, self._own = np.zeros(2), np.zeros((number, 2))
-        """What all have of b (2,), and what each UAV has beside it (N, 2), low-passed."""
+        self._own = np.zeros((number, 2))
+        """What each UAV has of b beside what all have (N, 2), low-passed."""
         self._offsets = np.zeros((number, 2))
         """What each UAV had beside it in the air (N, 2), and what its attitude has stepped since."""
         self._payload = _Payload(0.0, np.zeros(12), s)
@@ -131,13 +135,19 @@ class GroundedLinks:
             x: state of the links (6, N, 2).
             thrusts: of the UAVs (N,) (N).
             drag: of the wind on each of them (2,) (N).
-            unlocated: UAVs (from 0) without a position.
+            unlocated: UAVs (from 0) without a position. Their links lean as the others do on average: the controller
+                keeps them alike in the air, and what is estimated of one without its position takes in whatever
+                force the model does not have, as that of the ground.
         """
         self._payload = _Payload(time, payload, self._settings)
-        self._times[:] = self._located[:] = time
-        self._located[[*unlocated]] = -math.inf
-        self._common = np.median(x[OFF], axis=0)
-        self._own = x[OFF] - self._common
+        self._times[:] = time
+        known = np.ones(len(self._times), dtype=bool)
+        known[[*unlocated]] = False
+        self._located = np.where(known, time, -math.inf)
+        if known.any():
+            x = x.copy()
+            x[: S_DOT + 1, ~known] = x[: S_DOT + 1, known].mean(axis=1, keepdims=True)
+        self._own = x[OFF] - np.median(x[OFF], axis=0)
         self._offsets = self._own.copy()
         self._x[:] = x.transpose(1, 0, 2)
         self._P[:] = np.diag(self._initial)
@@ -160,15 +170,17 @@ class GroundedLinks:
         share = 1.0 - math.exp(-step / s.error_time_constant)
         # Without offsets: the median of a few of which one is far off is not in the middle of the others.
         common = np.median(errors[located] - self._offsets[located], axis=0)
-        self._common = self._common + share * (common - self._common)
-        self._own[located] += share * (errors[located] - self._common - self._own[located])
-        errors[~located] = self._own[~located] + self._common
+        self._own[located] += share * (errors[located] - common - self._own[located])
+        errors[~located] = self._own[~located] + common
 
     def add(self, measurement: Measurement) -> None:
         """Take a ``measurement`` of the payload's unit, or of a UAV unless a later one was taken before."""
         i, p = measurement.source, self._parameters
         if i == PAYLOAD:
+            before = self._payload.velocities(p.p)
             self._payload.add(measurement)
+            # A payload that is stopped, or turned, by the ground moves the feet of the links.
+            self._x[:, S_DOT] += (self._payload.velocities(p.p) - before)[:, :2] / p.l[:, None]
             return
         if not self._times[i] <= measurement.time <= self._commands[-1].time + _AHEAD_MAX:
             return
@@ -178,7 +190,7 @@ class GroundedLinks:
                 direction = -rotation_from_quaternion(measurement.pose)[:2, 2]
                 self._update(i, N, direction, self._direction_variance)
             return
-        position, velocity = self._payload.attachment(p.p[i])
+        position, velocity = self._payload.positions(p.p[i]), self._payload.velocities(p.p[i])
         if measurement.has_pose or measurement.has_motion:
             self._located[i] = measurement.time
         if measurement.has_pose:
@@ -191,6 +203,15 @@ class GroundedLinks:
         self._x[step.uav, OFF] -= step.angle
         self._own[step.uav] -= step.angle
         self._offsets[step.uav] -= step.angle
+
+    def locate(self, measurement: Measurement) -> None:
+        """Take a ``measurement`` in the air: which UAVs have a position."""
+        if isinstance(measurement, Position) and measurement.source != PAYLOAD and measurement.has_pose:
+            self._located[measurement.source] = measurement.time
+
+    def unlocated(self, time: float) -> frozenset[int]:
+        """Return the UAVs without a position at ``time`` (s)."""
+        return frozenset(np.flatnonzero(time - self._located > self._settings.position_gap).tolist())
 
     @property
     def _is_located(self) -> Mask:
