@@ -14,7 +14,7 @@ from idc_controller.control.controller import Decision, IntegratedDecisionContro
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.grounded_links import N_ACC, N_DOT, OFF, S_DOT, GroundedLinks, LinkStates, N, S
 from idc_controller.estimation.measurements import Channel, Estimate, Measurement, Position
-from idc_controller.trajectory.stop_plan import Braking, StopPlan, stop_plan
+from idc_controller.trajectory.stop_plan import Braking, Descent, StopPlan, stop_plan
 from idc_controller.trajectory.trajectory import Trajectory
 
 
@@ -41,6 +41,7 @@ class Hold(NamedTuple):
 
 
 _HOLD = Hold()
+_DESCENT = Descent()
 
 
 class StepRecord(NamedTuple):
@@ -60,11 +61,15 @@ class ControlLoop:
         compute_times: ComputeTimes,
         links: GroundedLinks,
         brake: Callable[[float, Array], Braking] = lambda time, state: Braking(),
+        descent: Descent = _DESCENT,
     ) -> None:
-        """``brake``: the stop of a vehicle without set-points, see :mod:`idc_controller.trajectory.stop_plan`."""
+        """``brake``: the stop of a vehicle without set-points, and ``descent``: how it lands then.
+
+        See :mod:`idc_controller.trajectory.stop_plan`.
+        """
         self.estimator, self.controller = estimator, controller
         self.links = links
-        self.compute_times, self.brake = compute_times, brake
+        self.compute_times, self.brake, self._descent = compute_times, brake, descent
         self.stop_plans: deque[StopPlan] = deque()
         """Of the control steps since the last set-points that all vehicles have received; the first one goes out."""
 
@@ -145,20 +150,37 @@ class ControlLoop:
         self.compute_times.shift(decision.compute_time.planner, Part.CONTROL, Part.PLANNING)
         return StepRecord(estimate, decision)
 
-    def send(self, record: StepRecord, effective: float, leaves: Array, hold: Hold = _HOLD) -> None:
+    def send(
+        self, record: StepRecord, effective: float, leaves: Array, hold: Hold = _HOLD, *, lands: bool = False
+    ) -> None:
         """Take over the set-points of a step in the air, which leave at ``leaves`` (N,) and act at ``effective``.
+
+        ``lands``: the payload is landing, which vehicles without set-points go on with.
 
         The stop plan goes on only with what every vehicle is known to have received. So a vehicle that is cut off, and
         all that are later, have plans that differ by a round trip of the links at most, whichever each received last.
         """
         self.compute_times.lap(Part.MONITORING)
         self.estimator.setpoints.add(effective, record.decision.u, leaves)
-        plan = stop_plan(self.controller.parameters, record.decision.flat, effective, record.estimate.x, self.brake)
-        plans = self.stop_plans
-        plans.append(
-            plan._replace(descent=effective + hold.duration, hover_forces=self.controller.hover_forces(effective))
-        )
+        plans, forces, flat = self.stop_plans, self.controller.hover_forces(effective), record.decision.flat
+        landing = self._descent if lands else None
+        plan = stop_plan(self.controller.parameters, flat, effective, record.estimate.x, self.brake, landing)
+        descent = plan.descent if lands else effective + hold.duration
+        plans.append(plan._replace(descent=descent, hover_forces=forces))
         received = self.estimator.setpoints.received_by_all(effective, hold.unconfirmed_max)
         while len(plans) > 1 and plans[1].start <= received:
             plans.popleft()
+        self.compute_times.lap(Part.STOP_PLAN)
+
+    def stand(self, record: StepRecord, effective: float, links: LinkStates, setpoints: Setpoints) -> None:
+        """Take over ``setpoints`` over a payload that has touched down, which act at ``effective`` (s).
+
+        Vehicles without others descend at once, with the thrust that they have: what they lifted would fall again.
+        """
+        self.compute_times.lap(Part.MONITORING)
+        layout, x = self.controller.layout, record.estimate.x.copy()
+        x[layout.s], x[layout.s_dot] = links.x[S].ravel(), links.x[S_DOT].ravel()
+        plan = stop_plan(self.controller.parameters, record.decision.flat, effective, x, landing=self._descent)
+        self.stop_plans.clear()
+        self.stop_plans.append(plan._replace(hover_forces=setpoints.thrusts[:, None] * setpoints.directions))
         self.compute_times.lap(Part.STOP_PLAN)

@@ -8,6 +8,7 @@ from gcs.config.flight_settings import TakeoffLandingSettings
 from gcs.flight.condition import System
 from gcs.flight.control_loop import ControlLoop, Setpoints, StepRecord
 from gcs.flight.flown_mission import FlownMission
+from gcs.flight.phase import Phase
 from gcs.flight.spool import SpoolUp, Touchdown
 from idc_controller.arrays import Array
 from idc_controller.estimation.grounded_links import LinkStates
@@ -127,12 +128,15 @@ class PayloadControl:
             tilts = decision.u[loop.controller.layout.n_setpoint].reshape(-1, 2)
             loop.links.command(effective, tilts, thrusts)
         setpoints = Setpoints(decision.directions, thrusts)
+        if links is not None and self._touchdown is not None:
+            loop.stand(record, effective, links, setpoints)
         if self._spool_up is not None:
             self._spool_up.sent(effective, setpoints, leaves, in_air=in_air)
             if in_air and system.payload.is_clear(estimate):
                 self._spool_up = None
         if in_air:
-            loop.send(record, effective, leaves, system.team.hold)
+            lands = self._flown.phase(time) is Phase.LAND
+            loop.send(record, effective, leaves, system.team.hold, lands=lands)
             places = loop.estimator.measurement_model.vehicles(time, decision.flat.x[0])
             contradicted = loop.estimator.health.uav_positions_isolated
             planned_down = float(decision.flat.payload[0, 0, 2])

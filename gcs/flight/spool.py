@@ -75,7 +75,7 @@ class Touchdown:
     First the ground takes the payload's weight over, all but a share of it that keeps the links taut: less where the
     payload slides or tips, more of a UAV without a position. A UAV that bears less than its own weight falls
     with its link, if that leans or its foot moves: this begins only when no link does and the payload is at rest, or
-    after a timeout.
+    after a timeout. Until then it is put off again where the payload moves, as one that has become lighter is lifted.
     """
 
     def __init__(
@@ -102,11 +102,15 @@ class Touchdown:
         standing = self._own + np.maximum(unloading, least) * np.maximum(hover - self._own, 0.0)
         if unloading > s.carried_share:
             return np.asarray(standing)
+        late = time - self._begin >= s.upright_timeout
         if self._upright_at is None:
             lean = max(np.abs(links.x[S]).max(), s.lean_time * np.abs(links.x[S_DOT]).max())
-            if (lean > s.upright_lean or not at_rest) and time - self._begin < s.upright_timeout:
-                return np.asarray(standing)
-            self._upright_at = time
+            if late or (lean <= s.upright_lean and at_rest):
+                self._upright_at = time
+        elif not (late or at_rest) and np.all(links.thrust > self._own):
+            self._upright_at = None
+        if self._upright_at is None:
+            return np.asarray(standing)
         usual = self._own + self._least[0] * np.maximum(hover - self._own, 0.0)
         faded = (time - self._upright_at) / s.spool_down_time * np.maximum(hover, self._own) / usual
         return np.asarray(standing * np.maximum(1.0 - faded, 0.0))  # all at the same time

@@ -15,7 +15,7 @@ from gcs.flight.control_loop import ControlLoop, Hold, Setpoints, StepRecord
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.setpoints import attitude_target
-from idc_controller.estimation.grounded_links import LinkStates
+from idc_controller.estimation.grounded_links import LinkStates, S
 from idc_controller.estimation.measurements import Position, SensorGroup
 from idc_controller.rotations import rotation_from_quaternion
 from idc_controller.safety.filter_protocol import NoObstacles
@@ -135,6 +135,15 @@ def test_stop_plan_goes_on_only_with_what_all_vehicles_have_received(monkeypatch
     assert send(times[9], times[9])[0] == times[9]
 
 
+def test_vehicles_without_setpoints_go_on_with_a_landing():
+    loop = control_loop()
+    record = loop.decide(estimated(v_0=np.array([0.0, 0.0, 0.3])), REST, learn_load=False)
+    for lands in (False, True):
+        loop.stop_plans.clear()
+        loop.send(record, 5.0, np.full(N, 4.95), Hold(5.0, 0.9), lands=lands)
+        assert (loop.stop_plan.descent <= 5.0) == lands
+
+
 UPRIGHT = LinkStates(np.zeros((6, N, 2)), SYSTEM.parameters().hover_thrust, np.zeros(2))
 
 
@@ -177,3 +186,18 @@ def test_idle_setpoints_are_upright_rotors_without_thrust():
     idle = Setpoints.idle(3)
     assert idle.directions.tolist() == [[0.0, 0.0, -1.0]] * 3
     assert idle.thrusts.tolist() == [0.0] * 3
+
+
+def test_stop_plan_over_a_payload_that_stands_descends_at_once_with_the_thrust_that_is_flown():
+    loop = control_loop()
+    record = loop.decide(estimated(), REST, learn_load=False)
+    loop.send(record, 5.0, np.full(N, 4.95))
+    x = np.zeros((6, N, 2))
+    x[S, :, 0] = 0.1
+    thrusts = 0.6 * P.hover_thrust
+    setpoints = Setpoints(np.tile([0.0, 0.0, -1.0], (N, 1)), thrusts)
+    loop.stand(record, 5.1, UPRIGHT._replace(x=x), setpoints)
+    plan = loop.stop_plan
+    assert plan.start == plan.descent == 5.1
+    assert -plan.hover_forces[:, 2] == pytest.approx(thrusts)
+    assert plan.control_points[:, :, 0] == pytest.approx((SPOTS[1:, 0] - 0.1 * P.l)[:, None] * np.ones(5), abs=1e-3)

@@ -19,11 +19,17 @@ def touchdown():
     return Touchdown(RestTrajectory(np.zeros(3), 10.0), 0.0, 10.0, OWN, SETTINGS)
 
 
-def thrusts(spool, elapsed, lean=0.0, hover=HOVER, speed=0.0, located=True):
+def thrusts(spool, elapsed, lean=0.0, hover=HOVER, speed=0.0, located=True, flown=None):
     """Thrusts at ``elapsed`` (s) after touch-down with one link that leans, over a payload that slides."""
     x = np.zeros((6, 4, 2))
     x[S, 2, 1] = lean
-    links = LinkStates(x, hover, np.zeros(2), np.array([speed, 0.0, 0.0]), np.array([True, True, True, located]))
+    links = LinkStates(
+        x,
+        hover if flown is None else flown,
+        np.zeros(2),
+        np.array([speed, 0.0, 0.0]),
+        np.array([True, True, True, located]),
+    )
     return spool.thrusts(10.0 + elapsed, hover, links)
 
 
@@ -61,6 +67,16 @@ def test_payload_that_slides_is_carried_less_and_the_thrust_does_not_fade_before
     assert np.all(np.diff(kept) <= 0.0) and OWN[0] < kept[-1] < OWN[0] + 0.5 * (STANDING[0] - OWN[0])
     assert thrusts(spool, 3.0 + 0.05)[0] == pytest.approx(kept[-1])
     assert thrusts(spool, 3.5)[0] < kept[-1]
+
+
+@pytest.mark.parametrize(("begun", "goes_on"), [(0.1, False), (0.5, True)])
+def test_thrust_fades_no_further_over_a_payload_that_is_lifted_while_the_links_are_taut(begun, goes_on):
+    spool = touchdown()
+    thrusts(spool, SETTINGS.unload_time)
+    faded = thrusts(spool, SETTINGS.unload_time + begun)
+    assert (faded[0] < OWN[0]) == goes_on
+    lifted = [thrusts(spool, 1.0 + begun + 0.05 * k, speed=0.3, flown=faded)[0] for k in range(10)]
+    assert (lifted[-1] < OWN[0]) == goes_on
 
 
 def test_uav_without_a_position_keeps_more_of_its_share_and_stops_with_the_others():
