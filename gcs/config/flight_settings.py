@@ -94,15 +94,9 @@ class TakeoffLandingSettings(SettingsTable):
     spool_up_time: float = 2.5  # s; from idle to hover thrust
     spool_down_time: float = 2.0  # s; from hover thrust to idle
     unload_time: float = 0.3  # s; in which the ground takes over the weight of a payload that has touched down
-    # of the payload's weight, that UAVs carry until their links are upright: with more of it a payload slides in wind
-    carried_share: Share = 0.24
+    friction: Share = 0.5  # least coefficient of friction of the ground: it holds a payload in the strongest wind
+    least_weight: Share = 0.37  # of the weight that was learnt, of a payload that loses its load where it is not learnt
     upright_lean: float = 0.05  # sine of a link's tilt that stays upright without thrust
-    # the same of a payload that slides: it stands on friction, which the wind exceeds
-    carried_share_sliding: Share = 0.06
-    slide_time: float = 1.0  # s; time constant with which it falls to that: longer than a payload takes to settle
-    # the same of a UAV without a position, which is off by less where its link pulls harder; with more of it a payload
-    # that has lost a load tips
-    carried_share_unlocated: Share = 0.5
     # m/s; of a payload at rest on the ground: six standard deviations of its unit's velocity
     rest_speed: float = 0.05
     lean_time: float = 1.0  # s; a link that moves on at its rate must be upright for so long, too

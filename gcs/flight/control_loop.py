@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple
@@ -151,11 +152,18 @@ class ControlLoop:
         return StepRecord(estimate, decision)
 
     def send(
-        self, record: StepRecord, effective: float, leaves: Array, hold: Hold = _HOLD, *, lands: bool = False
+        self,
+        record: StepRecord,
+        effective: float,
+        leaves: Array,
+        hold: Hold = _HOLD,
+        until_landing: float = math.inf,
     ) -> None:
         """Take over the set-points of a step in the air, which leave at ``leaves`` (N,) and act at ``effective``.
 
-        ``lands``: the payload is landing, which vehicles without set-points go on with.
+        Without set-points the vehicles hold for a while, but land when the payload would: in ``until_landing`` (s),
+        zero while it lands. Where that becomes known late the descent of one plan after the other is brought forward
+        no faster than time passes, so that vehicles with plans that differ by a round trip still descend together.
 
         The stop plan goes on only with what every vehicle is known to have received. So a vehicle that is cut off, and
         all that are later, have plans that differ by a round trip of the links at most, whichever each received last.
@@ -163,10 +171,12 @@ class ControlLoop:
         self.compute_times.lap(Part.MONITORING)
         self.estimator.setpoints.add(effective, record.decision.u, leaves)
         plans, forces, flat = self.stop_plans, self.controller.hover_forces(effective), record.decision.flat
-        landing = self._descent if lands else None
+        earliest = plans[-1].descent - (effective - plans[-1].start) if plans else -math.inf
+        landing = self._descent if until_landing <= 0.0 and earliest <= effective else None
         plan = stop_plan(self.controller.parameters, flat, effective, record.estimate.x, self.brake, landing)
-        descent = plan.descent if lands else effective + hold.duration
-        plans.append(plan._replace(descent=descent, hover_forces=forces))
+        if landing is None:
+            plan = plan._replace(descent=max(effective + min(hold.duration, until_landing), earliest))
+        plans.append(plan._replace(hover_forces=forces))
         received = self.estimator.setpoints.received_by_all(effective, hold.unconfirmed_max)
         while len(plans) > 1 and plans[1].start <= received:
             plans.popleft()

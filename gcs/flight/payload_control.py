@@ -8,8 +8,7 @@ from gcs.config.flight_settings import TakeoffLandingSettings
 from gcs.flight.condition import System
 from gcs.flight.control_loop import ControlLoop, Setpoints, StepRecord
 from gcs.flight.flown_mission import FlownMission
-from gcs.flight.phase import Phase
-from gcs.flight.spool import SpoolUp, Touchdown
+from gcs.flight.spool import Footing, SpoolUp, Touchdown
 from idc_controller.arrays import Array
 from idc_controller.estimation.grounded_links import LinkStates
 from idc_controller.estimation.measurements import Estimate, Measurement
@@ -135,8 +134,7 @@ class PayloadControl:
             if in_air and system.payload.is_clear(estimate):
                 self._spool_up = None
         if in_air:
-            lands = self._flown.phase(time) is Phase.LAND
-            loop.send(record, effective, leaves, system.team.hold, lands=lands)
+            loop.send(record, effective, leaves, system.team.hold, self._flown.until_landing(time))
             places = loop.estimator.measurement_model.vehicles(time, decision.flat.x[0])
             contradicted = loop.estimator.health.uav_positions_isolated
             planned_down = float(decision.flat.payload[0, 0, 2])
@@ -167,7 +165,12 @@ class PayloadControl:
             RestTrajectory(estimate.x[layout.r_0], time),
             float(estimate.x[layout.Theta][2]),
             time,
-            loop.controller.parameters.m * self._system.team.parameters.g,
+            Footing.of(
+                loop.controller.parameters,
+                self._system.settings,
+                self._settings,
+                loop.controller.settings.ground.tilt_max,
+            ),
             self._settings,
         )
         loop.estimator.setpoints.add(estimate.time, None)

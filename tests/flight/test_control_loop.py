@@ -135,13 +135,29 @@ def test_stop_plan_goes_on_only_with_what_all_vehicles_have_received(monkeypatch
     assert send(times[9], times[9])[0] == times[9]
 
 
-def test_vehicles_without_setpoints_go_on_with_a_landing():
+@pytest.fixture
+def unconfirmed(monkeypatch):
+    """A control loop that keeps all stop plans: no vehicle confirms any set-point."""
     loop = control_loop()
+    monkeypatch.setattr(loop.estimator.setpoints, "received_by_all", lambda effective, age_max: 0.0)
+    return loop
+
+
+def test_vehicles_without_setpoints_land_when_the_payload_would_and_go_on_with_its_landing(unconfirmed):
+    loop = unconfirmed
     record = loop.decide(estimated(v_0=np.array([0.0, 0.0, 0.3])), REST, learn_load=False)
-    for lands in (False, True):
-        loop.stop_plans.clear()
-        loop.send(record, 5.0, np.full(N, 4.95), Hold(5.0, 0.9), lands=lands)
-        assert (loop.stop_plan.descent <= 5.0) == lands
+    for until_landing in (0.1, 0.05, 0.0):
+        loop.send(record, 5.1 - until_landing, np.full(N, 4.95), Hold(5.0, 0.9), until_landing)
+    assert [plan.descent for plan in loop.stop_plans] == pytest.approx([5.1, 5.1, 4.5])
+
+
+def test_landing_that_is_decided_late_brings_the_descent_forward_step_by_step(unconfirmed):
+    loop = unconfirmed
+    record = loop.decide(estimated(v_0=np.array([0.0, 0.0, 0.3])), REST, learn_load=False)
+    for k in range(100):
+        loop.send(record, 5.0 + PERIOD * k, np.full(N, 4.95), Hold(5.0, 0.9), 0.0 if k else np.inf)
+    changes = np.diff([plan.descent for plan in loop.stop_plans])
+    assert changes[:49] == pytest.approx(-PERIOD) and changes[50:] == pytest.approx(PERIOD)
 
 
 UPRIGHT = LinkStates(np.zeros((6, N, 2)), SYSTEM.parameters().hover_thrust, np.zeros(2))

@@ -5,18 +5,19 @@ import pytest
 
 from gcs.config import SystemConfig
 from gcs.config.flight_settings import DEFAULTS
-from gcs.flight.spool import Touchdown
+from gcs.flight.spool import Footing, Touchdown
 from idc_controller.estimation.grounded_links import LinkStates, S
 from idc_controller.trajectory.trajectory import RestTrajectory
 
 SETTINGS = DEFAULTS.takeoff_landing
 PARAMETERS = SystemConfig().parameters()
 OWN, HOVER = np.full(4, 7.0), np.full(4, 15.0)
-STANDING = OWN + SETTINGS.carried_share * (HOVER - OWN)
+FOOTING = Footing(OWN, OWN + 0.5, 0.24, 0.5, 0.16)
+STANDING = OWN + FOOTING.carried * (HOVER - OWN)
 
 
 def touchdown():
-    return Touchdown(RestTrajectory(np.zeros(3), 10.0), 0.0, 10.0, OWN, SETTINGS)
+    return Touchdown(RestTrajectory(np.zeros(3), 10.0), 0.0, 10.0, FOOTING, SETTINGS)
 
 
 def thrusts(spool, elapsed, lean=0.0, hover=HOVER, speed=0.0, located=True, flown=None):
@@ -61,12 +62,23 @@ def test_spool_down_waits_for_links_until_its_timeout():
     assert not thrusts(spool, SETTINGS.upright_timeout + SETTINGS.spool_down_time + 0.05, 1.0).any()
 
 
-def test_payload_that_slides_is_carried_less_and_the_thrust_does_not_fade_before_it_rests():
+def test_payload_that_slides_is_carried_less_the_farther_it_has_slid_and_the_thrust_does_not_fade_before_it_rests():
     spool = touchdown()
     kept = np.array([thrusts(spool, 0.05 * k, speed=0.3)[0] for k in range(60)])
-    assert np.all(np.diff(kept) <= 0.0) and OWN[0] < kept[-1] < OWN[0] + 0.5 * (STANDING[0] - OWN[0])
+    assert np.all(np.diff(kept) <= 0.0) and kept[-1] == pytest.approx(FOOTING.taut[0])
     assert thrusts(spool, 3.0 + 0.05)[0] == pytest.approx(kept[-1])
     assert thrusts(spool, 3.5)[0] < kept[-1]
+
+
+def test_footing_holds_in_the_strongest_wind_and_beside_a_uav_without_a_position():
+    failsafe = DEFAULTS.failsafe
+    footing = Footing.of(PARAMETERS, failsafe, SETTINGS, tilt_max=0.3)
+    assert (1.0 - footing.carried) * SETTINGS.friction == pytest.approx(failsafe.wind_drag)
+    lifted = (footing.carried + footing.carried_unlocated) / PARAMETERS.number_of_uavs
+    assert lifted == pytest.approx(0.5 * SETTINGS.least_weight)
+    # Tilted, and with mass and thrust off by what is tolerated, a UAV still lifts more than its weight.
+    weight, share = PARAMETERS.m * PARAMETERS.g, failsafe.parameter_tolerance
+    assert np.all(footing.taut * (1.0 - share) * np.sqrt(1.0 - 0.3**2) > weight)
 
 
 @pytest.mark.parametrize(("begun", "goes_on"), [(0.1, False), (0.5, True)])
@@ -83,6 +95,6 @@ def test_uav_without_a_position_keeps_more_of_its_share_and_stops_with_the_other
     spool = touchdown()
     waiting = thrusts(spool, 1.0, lean=1.0, located=False)
     assert waiting[:3] == pytest.approx(STANDING[:3])
-    assert waiting[3] == pytest.approx(OWN[3] + SETTINGS.carried_share_unlocated * (HOVER[3] - OWN[3]))
+    assert waiting[3] == pytest.approx(OWN[3] + FOOTING.carried_unlocated * (HOVER[3] - OWN[3]))
     fading = np.array([thrusts(spool, 1.05 + 0.05 * k, located=False) for k in range(50)])
     assert fading[:, 3] / waiting[3] == pytest.approx(fading[:, 0] / waiting[0]) and not fading[-1].any()
