@@ -45,7 +45,7 @@ class FailsafeSettings(SettingsTable):
     attitude_certainty: Share = 0.99  # probability, by the filter's covariance, that it is wrong by more than that
     pad_attitude_error: float = 0.05  # rad; between axes of vehicle and payload on the pad: how level cradles are
     tilt_time: float = 0.5  # s; for which the tilt must exceed its limit
-    descent_timeout: float = 15.0  # s; after the descent's planned end, with the payload still high
+    descent_timeout: float = 15.0  # s; after the descent's planned end, without a touchdown
     arm_timeout: float = 12.0  # s; until all vehicles are in OFFBOARD and armed
     disarm_timeout: float = 10.0  # s; until all are disarmed: heartbeats come once a second, and some are lost
     landing_timeout: float = setting(120.0, "s", "until all have landed autonomously", gt=0.0)
@@ -106,7 +106,6 @@ class TakeoffLandingSettings(SettingsTable):
     touch_height_near: float = 0.08  # m; a pad's height, where a bouncing payload is on the ground
     touch_depth_near: float = 0.03  # m; of the reference below it there
     touch_steps: int = 4  # control steps in a row that are a touchdown
-    touch_grace: float = 3.0  # s; after the descent's planned end, that are a touchdown as well
     touch_height: float = 1.0  # m; above which nothing is a touchdown
     lift_off_lag: float = 0.05  # m; of a climb behind its plan on the ground, from which the thrust grows on
     clear_height: float = 0.3  # m; below which the ground may carry part of the load
