@@ -20,8 +20,8 @@ class FailsafeSettings(SettingsTable):
     overrun_limit: float = 1.6  # control periods between steps; the loop was held at 1.7, and lost at 1.95
     # s; one way, that is flown whatever share of the set-points is lost
     latency_any_loss: float = 0.05
-    # s; mean age that losses may add to set-points, at `latency_limit` and at `latency_any_loss`: half of the margin
-    loss_age: tuple[float, float] = (0.007, 0.012)
+    # s; mean age that losses may add to set-points, at `latency_limit` and at `latency_any_loss`: a third of the margin
+    loss_age: tuple[float, float] = (0.007, 0.016)
     timesync_timeout: float = 1.5  # s; without an answer: at 50 % loss both ways one in 75 such times without copies
     latency_window: float = 0.3  # s; in which every round trip must be late, or half of all usually
     parameter_tolerance: float = 0.01  # relative error of a vehicle's parameter before take-off

@@ -7,6 +7,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 from gcs.config.flight_settings import DEFAULTS, FlightSettings
 from gcs.flight.team import Team
 from gcs.mavlink import px4
+from gcs.mavlink.team_failsafe import TeamState
 
 
 class CommandSequence(ABC):
@@ -39,7 +40,7 @@ class Arming(CommandSequence):
             self.problem = team.refusal or f"not every vehicle is armed after {timeout:g} s"
         elif self._command is None:
             if elapsed > self._settings.takeoff_landing.offboard_delay:
-                self._command = _set_mode(team, px4.MainMode.OFFBOARD)
+                self._command = _enter(team, TeamState.ARMED)
         elif team.answered and self._command == mavlink.MAV_CMD_DO_SET_MODE:
             self._command = _arm(team, True)
         elif team.answered and team.armed:
@@ -68,27 +69,28 @@ class Disarming(CommandSequence):
 
 
 class AutonomousLanding(CommandSequence):
-    """Hold at the end of the stop plan, then descend when a vehicle does that receives nothing."""
+    """The states that follow OFFBOARD, each commanded when a vehicle enters it that receives nothing."""
 
     descent_pending = True
 
     def __init__(self, team: Team, time: float, settings: FlightSettings = DEFAULTS) -> None:
         super().__init__(team, time, settings)
-        _set_mode(team, px4.MainMode.AUTO, px4.AutoMode.LOITER)
+        _enter(team, TeamState.OFFBOARD.next)
 
     def step(self, time: float, now: float) -> None:
         """See :class:`CommandSequence`."""
         s, elapsed = self._settings.failsafe, time - self._since
         if self.descent_pending and elapsed >= self._team.land_delay:
             self.descent_pending = False
-            _set_mode(self._team, px4.MainMode.AUTO, px4.AutoMode.LAND)
+            _enter(self._team, TeamState.HOLD.next)
         if self._team.reachable_are_disarmed(now, s.telemetry_timeout):
             self.done = True
         elif elapsed > s.landing_timeout:
             self.problem = f"not every vehicle has landed after {s.landing_timeout:g} s"
 
 
-def _set_mode(team: Team, *mode: float) -> int:
+def _enter(team: Team, state: TeamState) -> int:
+    mode = px4.decode_custom_mode(state.mode)
     team.command_all(mavlink.MAV_CMD_DO_SET_MODE, mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, *mode)
     return mavlink.MAV_CMD_DO_SET_MODE
 

@@ -1,15 +1,14 @@
-"""Conditions of failsafes: what they are evaluated on and when, what they return, and the reactions they call for."""
+"""Conditions of failsafes: what they are evaluated on and when, and what they return."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from enum import Enum, IntEnum
+from enum import Enum
 from typing import NamedTuple
 
 from gcs.config.flight_settings import DEFAULTS, FailsafeSettings
 from gcs.config.tables import MotionConfig
-from gcs.flight.alarms import Severity
 from gcs.flight.command_sequences import CommandSequence
 from gcs.flight.control_loop import ControlLoop
 from gcs.flight.landing_place import LandingPlace
@@ -22,6 +21,7 @@ from gcs.flight.team_clock import StepIntervals
 from gcs.mavlink.vehicle_link import VehicleLink
 from gcs.mission.model import Mission
 from idc_controller.arrays import Array
+from idc_controller.control.load_adaptation import LoadAdaptation
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.grounded_links import GroundedLinks
 from idc_controller.estimation.measurements import Estimate
@@ -30,39 +30,6 @@ from idc_controller.guidance.progress import Guidance
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.safety.separation import Obstruction, obstruction
 from idc_controller.trajectory.trajectory import Trajectory
-
-
-class Reaction(IntEnum):
-    """Reaction of the ground, in ascending severity."""
-
-    severity: Severity
-    """Severity of the alarm, unless the failsafe has another."""
-    meaning: str
-
-    def __new__(cls, value: int, severity: Severity, meaning: str) -> Reaction:
-        """Make a member with its two attributes."""
-        reaction = int.__new__(cls, value)
-        reaction._value_, reaction.severity, reaction.meaning = value, severity, meaning
-        return reaction
-
-    # fmt: off
-    NONE = 0, Severity.NOTICE, "the flight goes on"
-    REFUSE = 1, Severity.ERROR, "the flight does not begin, nothing is armed"
-    DISARM = 2, Severity.ERROR, "rotors off, on the ground"
-    RETURN = (3, Severity.ERROR, "return home as the mission flies, and land there")
-    BRAKE_AND_LAND = (4, Severity.CRITICAL,
-        "come to rest along the path that is followed, then land there under the ground's control")
-    AUTONOMOUS_LANDING = 5, Severity.ALERT, "all vehicles follow the same stop plan, hold, and descend on board"
-    END_CONTROL = 6, Severity.ALERT, "the ground stops sending; each vehicle is left to its own failsafes"
-    # fmt: on
-
-    def in_phase(self, phase: Phase) -> Reaction:
-        """Return the reaction in ``phase``: on the ground there is nothing to land."""
-        if self is Reaction.END_CONTROL:
-            return self
-        if phase in (Phase.CONNECT, Phase.CHECK, Phase.ON_GROUND):
-            return Reaction.REFUSE
-        return Reaction.DISARM if phase in (Phase.ARM, Phase.SPOOL_UP, Phase.DISARM) else self
 
 
 class Check(Enum):
@@ -101,6 +68,8 @@ class System:
     """Of the control steps that were made."""
     landing_place: LandingPlace | None = None
     """None: it is not watched."""
+    load: LoadAdaptation | None = None
+    """The load as it is learnt; None: it is not."""
     links: GroundedLinks | None = None
     """Over a payload on the ground; None: not estimated."""
     landing_speed: float = MotionConfig.landing_speed
@@ -126,6 +95,7 @@ class System:
             kept_clearance=config.avoidance.margin + config.safety.planner.tracking,
             control_interval=1.0 / config.rates.control,
             landing_place=landing_place,
+            load=control.controller.load,
             links=control.links,
             landing_speed=config.motion.landing_speed,
         )

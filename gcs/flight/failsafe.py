@@ -1,8 +1,8 @@
-"""Failsafes of the ground, which end or change a flight: one table of conditions, reactions, severities, alarm codes.
+"""Failsafes of the ground, which end or change a flight: the table of conditions, reactions, severities, alarm codes.
 
 Whoever ends or changes a flight raises a member of :class:`Failsafe`; the more severe reaction wins. To add one, add a
 member here, with its condition. Those of a vehicle, which act without the ground, are in
-``vehicle_sim/autopilot/failsafe.py``. ``docs/failsafes.md`` is made from both.
+``vehicle_sim/autopilot/failsafe.py``; the states that both lead to in ``gcs/mavlink/team_failsafe.py``.
 """
 
 from gcs.flight import in_air_conditions as in_air
@@ -10,8 +10,9 @@ from gcs.flight import link_conditions as link
 from gcs.flight import preflight_conditions as preflight
 from gcs.flight.alarms import AlarmCode, Severity
 from gcs.flight.attitude_error import attitude_misaligned, attitude_wrong
-from gcs.flight.condition import Check, Condition, Reaction
+from gcs.flight.condition import Check, Condition
 from gcs.flight.phase import Phase
+from gcs.mavlink.team_failsafe import Reaction
 
 
 class Failsafe(AlarmCode):
@@ -35,7 +36,7 @@ class Failsafe(AlarmCode):
         meaning: str,
         severity: Severity | None = None,
     ) -> None:
-        super().__init__(severity or reaction.severity, action, meaning)
+        super().__init__(severity or Severity(reaction.severity), action, meaning)
         self.check, self.condition, self.reaction = check, condition, reaction
 
     # fmt: off

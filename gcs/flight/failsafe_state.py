@@ -3,13 +3,14 @@
 import math
 
 from gcs.flight.alarms import AlarmLog
-from gcs.flight.condition import Check, Moment, Reaction, System, Trigger
+from gcs.flight.condition import Check, Moment, System, Trigger
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.phase import Phase
+from gcs.mavlink.team_failsafe import Reaction
 
 _ADMITTED = {
     (check, phase): tuple(
-        (row, row.condition, row.reaction.in_phase(phase))
+        (row, row.condition, phase.state.reaction(row.reaction))
         for row in Failsafe
         if row.check is check and row.condition is not None
     )
@@ -57,7 +58,7 @@ class FailsafeState:
         self.raised.add(failsafe)
         if not self.reason:
             self.reason, self.time = trigger.reason, time
-        reaction = failsafe.reaction.in_phase(phase)
+        reaction = phase.state.reaction(failsafe.reaction)
         if reaction <= self.reaction:
             return Reaction.NONE
         self.reaction = reaction

@@ -8,7 +8,7 @@ import numpy as np
 
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.command_sequences import Arming, AutonomousLanding, CommandSequence, Disarming
-from gcs.flight.condition import Check, Moment, Reaction, System, Trigger
+from gcs.flight.condition import Check, Moment, System, Trigger
 from gcs.flight.control_loop import ControlLoop, Setpoints, StepRecord
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.failsafe_state import FailsafeState
@@ -18,6 +18,7 @@ from gcs.flight.landing_place import LandingPlace
 from gcs.flight.payload_control import PayloadControl
 from gcs.flight.phase import CONTROLLED, IN_AIR, STANDING, Phase
 from gcs.flight.team import Team
+from gcs.mavlink.team_failsafe import Reaction
 from gcs.mission.cargo import CargoState
 from gcs.mission.model import Mission
 from idc_controller.arrays import Array

@@ -72,10 +72,10 @@ def impact(system: System, moment: Moment) -> Trigger | None:
 
 
 def wind_exceeded(system: System, moment: Moment) -> Trigger | None:
-    if moment.estimate is None or (air := system.guidance.air) is None:
+    if system.load is None or (air := system.load.estimate.air) is None:
         return None
-    p, limit = system.team.parameters, system.settings.wind_drag
-    weight = (p.m_0 + moment.estimate.mass_excess) * p.g + float(moment.estimate.force[2])
+    # Both as they are learnt: for a moment a payload that has lost a part of its mass seems to weigh less than it does.
+    weight, limit = system.load.payload_mass * system.team.parameters.g, system.settings.wind_drag
     drag = math.hypot(*air.on_payload(np.zeros(3))[:2])
     if drag <= limit * max(weight, 0.0):
         return None

@@ -11,9 +11,9 @@ from idc_controller.control.delay_margin import expected_extra_age
 def latency_limit(settings: FailsafeSettings, loss: float, period: float) -> float:
     """Return the largest latency (s), one way, where a share ``loss`` of the set-points is lost.
 
-    ``period`` of the set-points (s). The set-point in force is older than the latency by those lost before it. Half of
-    what the loop bears of that age is allowed: ``loss_age`` at the limit without loss, linearly more at less latency,
-    and up to ``latency_any_loss`` whatever is lost.
+    ``period`` of the set-points (s). The set-point in force is older than the latency by those lost before it. A third
+    of what the loop bears of that age is allowed: ``loss_age`` at the limit without loss, linearly more at less
+    latency, and up to ``latency_any_loss`` whatever is lost.
     """
     age, (at_limit, at_any) = expected_extra_age(min(loss, 0.99), period), settings.loss_age
     share = min(max((at_any - age) / (at_any - at_limit), 0.0), 1.0)

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.flight.control_loop import Hold
-from gcs.mavlink import px4
 from gcs.mavlink.requests import Command, CommandState
 from gcs.mavlink.stop_plan import LAG_MAX
+from gcs.mavlink.team_failsafe import TeamState
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.parameters import SystemParameters
 
@@ -55,12 +55,12 @@ class Team:
     @property
     def land_delay(self) -> float:
         """Time after which a vehicle without set-points descends (s)."""
-        return min(link.status.parameters[px4.PARAM_LAND_DELAY] for link in self.links)
+        return min(link.status.parameters[TeamState.HOLD.timer] for link in self.links)
 
     @property
     def hold(self) -> Hold:
         """The hold without set-points, from the last ones on."""
-        loss = max(link.status.parameters[px4.PARAM_SETPOINT_LOSS] for link in self.links)
+        loss = max(link.status.parameters[TeamState.OFFBOARD.timer] for link in self.links)
         return Hold(loss + self.land_delay, LAG_MAX * loss)
 
     def reachable_are_disarmed(self, now: float, timeout: float) -> bool:

@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
-from gcs.flight.condition import Reaction
 from gcs.flight.phase import CONTROLLED, IN_AIR, Phase
 from gcs.mavlink import px4
 from gcs.mavlink.services.report import Report
+from gcs.mavlink.team_failsafe import Reaction
 from gcs.serve.aircraft import TeamAircraft
 from gcs.serve.session import TeamSession
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position

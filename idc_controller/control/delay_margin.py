@@ -6,9 +6,11 @@ loss of one of those is not known yet. A vehicle that gets no set-point flies th
 """
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 
+from idc_controller.arrays import Array
 from idc_controller.control.mpc import ModelPredictiveController
 from idc_controller.model.linear import LinearModel
 
@@ -26,22 +28,52 @@ class HoverLoop:
         self.K = np.column_stack([mpc.qp.unconstrained(e)[: self._m] for e in np.eye(self._n)])
         """Gain (3 N, n) of the first move."""
 
-    def spectral_radius(self, delay: float) -> float:
+    def spectral_radius(self, delay: float, payload_mass: float | None = None) -> float:
         """Return the spectral radius of a step whose set-points act ``delay`` (s) late, which nothing compensates.
 
-        ``delay``: below one control period.
+        ``payload_mass`` (kg) of the plant, of which the gain knows nothing; None: that of the model.
         """
         n, m = self._n, self._m
-        late_us = round(delay * 1e6)
-        A_rest, B_now, _ = self._model.discretised(self._period_us - late_us)
-        B_before = A_rest @ self._model.discretised(late_us)[1] if late_us else np.zeros((n, m))
-        F = np.zeros((n + m, n + m))
-        F[:n, :n], F[:n, n:], F[n:, :n] = self.A + B_now @ self.K, B_before, self.K
+        plant = self._plant(payload_mass)
+        periods, late_us = divmod(round(delay * 1e6), self._period_us)
+        A, B_now, _ = plant(self._period_us - late_us)
+        B_before = np.zeros((n, m))
+        if late_us:
+            A_late, B_late, _ = plant(late_us)
+            A, B_before = A @ A_late, A @ B_late
+        # State: x, then the set-points of the periods before, the newest first.
+        F = np.zeros((n + (periods + 1) * m,) * 2)
+        sent = [slice(n + k * m, n + (k + 1) * m) for k in range(periods + 1)]
+        F[:n, :n], F[sent[0], :n], F[:n, sent[-1]] = A, self.K, B_before
+        F[:n, sent[-2] if periods else slice(n)] += B_now if periods else B_now @ self.K
+        for newer, older in pairwise(sent):
+            F[older, newer] = np.eye(m)
         return float(np.abs(np.linalg.eigvals(F)).max())
 
-    def delay_margin(self) -> float:
-        """Return the delay (s) that is not compensated at which the loop becomes unstable."""
-        return _crossing(self.spectral_radius, 0.0, 1e-6 * (self._period_us - 1))
+    def _plant(self, payload_mass: float | None) -> Callable[[int], tuple[Array, Array, Array]]:
+        """Return ``discretised`` of a payload of that mass, in force components over the model's hover thrust."""
+        if payload_mass is None:
+            return self._model.discretised
+        plant = LinearModel(self._model.parameters.with_payload_mass(payload_mass))
+        layout = plant.layout
+        tilts, tilt_setpoints = np.ones(self._n), np.ones(self._m)
+        per_thrust = np.repeat(plant.parameters.hover_thrust / self._model.parameters.hover_thrust, 2)
+        for part in (layout.n, layout.n_dot, layout.n_acc):
+            tilts[part] = per_thrust
+        tilt_setpoints[layout.n_setpoint] = per_thrust
+
+        def discretised(interval_us: int) -> tuple[Array, Array, Array]:
+            A, B, B_d = plant.discretised(interval_us)
+            return tilts[:, None] * A / tilts, tilts[:, None] * B / tilt_setpoints, tilts[:, None] * B_d
+
+        return discretised
+
+    def delay_margin(self, payload_mass: float | None = None) -> float:
+        """Return the delay (s) that is not compensated at which the loop becomes unstable.
+
+        ``payload_mass`` (kg) as of :meth:`spectral_radius`.
+        """
+        return _crossing(lambda delay: self.spectral_radius(delay, payload_mass), 0.0, 6e-6 * self._period_us)
 
     def mean_square_growth(self, steps: int, loss: float) -> float:
         """Return by which factor the mean square of the state grows in a step; below 1 the loop is stable.

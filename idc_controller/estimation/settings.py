@@ -227,13 +227,12 @@ class AttitudeStepSettings(SettingsTable):
     """Steps of a UAV's attitude that its body rates do not explain."""
 
     false_alarm: Share = 1e-9  # probability per sample of a step of a nominal sensor
-    turn_error: float = 0.01  # rad; of the turn by the rates of two samples
+    turn_error: float = 0.25  # rad/s; of the turn by the rates of two samples, over the time between them
     noise_memory: float = 0.5  # s; over which the noise of the attitudes is followed
     persistent_share: Share = 0.5  # of a step that is left with the next sample: else it was that of one sample
-    gap: float = 0.13  # s; between two samples that are compared
+    gap: float = 0.21  # s; between two samples that are compared: four are lost in a row
     response_min: Share = 0.5  # share of the attitude loop's rate with which a vehicle turns against a step on board
     response_max: float = 2.0  # the same; a blow turns it faster
-    response_time: float = 0.1  # s; after a step, in which it must
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -21,11 +21,16 @@ def attitude(time, n, n_dot, rng, noise=1.0, uav=UAV):
     return Attitude(time, uav, np.array(turn), np.array([n_dot[1], -n_dot[0], 0.0]) + rng.normal(0.0, 0.005, 3))
 
 
-def found(step=ANGLE, on_board=True, lasts=np.inf, swing=0.0, noise=1.0, seconds=2.0, seed=1):
-    """Return the detector and what it has found: of a vehicle that swings, with a ``step`` at the onset."""
+def found(step=ANGLE, on_board=True, lasts=np.inf, swing=0.0, noise=1.0, seconds=2.0, seed=1, lost=()):
+    """Return the detector and what it has found: of a vehicle that swings, with a ``step`` at the onset.
+
+    ``lost``: samples (of the 25 a second) that do not arrive.
+    """
     steps, rng, confirmed = AttitudeSteps(P, NOISE, AttitudeStepSettings()), np.random.default_rng(seed), []
     rate = lambda t: swing * np.array([np.sin(5.0 * t), 0.0])  # noqa: E731
     for k in range(round(seconds / PERIOD)):
+        if k in lost:
+            continue
         time = PERIOD * k
         n, n_dot = -swing / 5.0 * np.array([np.cos(5.0 * time), 0.0]), rate(time)
         if ONSET < time < ONSET + lasts:
@@ -43,6 +48,14 @@ def test_step_that_a_vehicle_flies_by_is_found_with_its_angle(swing):
     assert step.uav == UAV and step.time == pytest.approx(1.0) and step.interval == pytest.approx(PERIOD)
     assert step.angle == pytest.approx(ANGLE, abs=0.025)
     assert steps.total[UAV] == pytest.approx(step.angle)
+
+
+@pytest.mark.parametrize("swing", [0.0, 0.5])
+@pytest.mark.parametrize("lost", [(24, 25), (25, 26, 27), (26, 27), (25, 26, 28), (24, 25, 26, 27)])
+def test_step_is_found_where_samples_about_it_are_lost(swing, lost):
+    _, (step,) = found(swing=swing, lost=lost)
+    assert step.angle == pytest.approx(ANGLE, abs=0.03)
+    assert not found(swing=swing, lost=lost, on_board=False)[1]
 
 
 @pytest.mark.parametrize("swing", [0.0, 0.5])

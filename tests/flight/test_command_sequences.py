@@ -71,7 +71,7 @@ class Answering:
         self.answered, self.refusal = False, None
 
 
-OFFBOARD = (mavlink.MAV_CMD_DO_SET_MODE, 1.0, px4.MainMode.OFFBOARD)
+OFFBOARD = (mavlink.MAV_CMD_DO_SET_MODE, 1.0, px4.MainMode.OFFBOARD, 0)
 ARM, DISARM = ((mavlink.MAV_CMD_COMPONENT_ARM_DISARM, value) for value in (1.0, 0.0))
 DELAY = DEFAULTS.takeoff_landing.offboard_delay
 ARM_TIMEOUT, DISARM_TIMEOUT = DEFAULTS.failsafe.arm_timeout, DEFAULTS.failsafe.disarm_timeout

@@ -1,6 +1,6 @@
 """All pairs of failsafes in all phases, without flying: what the ground does is the more severe, and ends disarmed.
 
-That vehicles without a ground end so, too, is in ``test_common_descent.py``.
+That vehicles without a ground end so, too, is in ``tests/vehicle/test_vehicle_failsafes.py``.
 """
 
 from itertools import product
@@ -14,13 +14,14 @@ from flights import MISSIONS
 from gcs.flight import stack
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.command_sequences import Arming
-from gcs.flight.condition import Reaction, Trigger
+from gcs.flight.condition import Trigger
 from gcs.flight.control_loop import Hold, Setpoints
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.failsafe_state import FailsafeState
 from gcs.flight.flight import Flight
-from gcs.flight.phase import IN_AIR, Phase
+from gcs.flight.phase import Phase
 from gcs.mavlink import px4
+from gcs.mavlink.team_failsafe import Reaction, TeamState
 from gcs.mission.read import read_mission
 from idc_controller.control.load_adaptation import LoadAdaptation
 from idc_controller.control.settings import ControllerSettings
@@ -34,7 +35,7 @@ PARAMETERS = MISSION.system.parameters()
 MODEL = LinearModel(PARAMETERS)
 UPRIGHT = LinkStates(np.zeros((6, 4, 2)), PARAMETERS.hover_thrust, np.zeros(2))
 LAYOUT, STANDING = MODEL.layout, -PARAMETERS.payload.below
-STEP = 0.05
+STEP = 0.1
 DESCENT = 10.0
 """Time (s) from AUTO.LAND until the stub's vehicles have landed, and disarmed."""
 BY_REACTION = {
@@ -44,9 +45,7 @@ BY_REACTION = {
     Reaction.AUTONOMOUS_LANDING: Failsafe.TELEMETRY_LOST,
     Reaction.END_CONTROL: Failsafe.INTERRUPTED_TWICE,
 }
-REFUSED = (Phase.CONNECT, Phase.CHECK, Phase.ON_GROUND)
-ON_GROUND = (Phase.ARM, Phase.SPOOL_UP, Phase.DISARM)
-WALKED = [phase for phase in Phase if phase not in (*REFUSED, Phase.ENDED, Phase.HOLD)]
+WALKED = [phase for phase in Phase if phase.state is not TeamState.DISARMED and phase is not Phase.HOLD]
 
 
 class ObedientTeam:
@@ -142,25 +141,27 @@ def test_of_any_two_failsafes_in_any_phase_the_more_severe_counts_in_either_orde
             assert done[1] is Reaction.NONE or done[1] > done[0], (phase, pair)
             assert state.raised == set(pair)
             reactions.add(state.reaction)
-        assert reactions == {max(first.reaction.in_phase(phase), second.reaction.in_phase(phase))}, (phase, pair)
+        assert reactions == {max(phase.state.reaction(each.reaction) for each in (first, second))}, (phase, pair)
 
 
-@pytest.mark.parametrize("reaction", Reaction)
-def test_reaction_fits_where_the_team_is(reaction):
-    if reaction in (Reaction.NONE, Reaction.END_CONTROL):
-        assert all(reaction.in_phase(phase) in (reaction, Reaction.REFUSE, Reaction.DISARM) for phase in Phase)
-        return
-    for phase in Phase:
-        expected = Reaction.REFUSE if phase in REFUSED else Reaction.DISARM if phase in ON_GROUND else reaction
-        assert reaction.in_phase(phase) is expected, phase
+@pytest.mark.parametrize("state", TeamState)
+def test_every_state_has_a_reaction_and_none_to_what_is_more_severe_is_milder(state):
+    done = [state.reaction(reaction) for reaction in Reaction]
+    assert done == sorted(done) and Reaction.NONE not in done and done[-1] is Reaction.END_CONTROL
+
+
+def test_every_state_of_the_team_leads_to_disarmed():
+    for state in TeamState:
+        for _ in TeamState:
+            state = state.next
+        assert state is TeamState.DISARMED
 
 
 @pytest.mark.parametrize("phase", WALKED)
 @pytest.mark.parametrize("first", BY_REACTION)
-def test_every_pair_of_reactions_in_every_phase_ends_disarmed(phase, first):
-    for second, delay in product((None, *BY_REACTION), (0, 1, 30)):
-        if Reaction.DISARM in (first, second) and phase in IN_AIR | {Phase.AUTONOMOUS_LANDING, Phase.SPOOL_DOWN}:
-            continue  # of arming only
+def test_every_reaction_in_every_phase_ends_disarmed_also_with_a_more_severe_one_after_it(phase, first):
+    more_severe = [reaction for reaction in BY_REACTION if reaction > first]  # others have no effect
+    for second, delay in [(None, 0), *product(more_severe, (0, 1, 15))]:
         flight = TrackedFlight().advance_to(phase)
         flight.fails(BY_REACTION[first])
         for _ in range(delay):

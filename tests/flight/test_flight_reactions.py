@@ -1,6 +1,7 @@
 """What a flight does about a failsafe, in each of its phases: the phase that follows, what vehicles are told."""
 
 import math
+from itertools import combinations
 from types import SimpleNamespace
 
 import numpy as np
@@ -104,6 +105,19 @@ def test_more_severe_reaction_takes_over_and_is_not_taken_back():
     flight.fails(Failsafe.NO_PATH)
     assert (flight.phase, flight.commands) == (Phase.AUTONOMOUS_LANDING, told)
     assert flight.failsafes.raised == {Failsafe.INTERRUPTED, Failsafe.TELEMETRY_LOST, Failsafe.NO_PATH}
+
+
+@pytest.mark.parametrize("phase", [phase for phase in Phase if phase not in (Phase.AUTONOMOUS_LANDING, Phase.ENDED)])
+def test_two_failsafes_at_one_step_lead_to_the_same_reaction_and_state_in_either_order(phase):
+    for pair in combinations((Failsafe.LANDING_ABORTED, Failsafe.INTERRUPTED, Failsafe.TELEMETRY_LOST), 2):
+        outcomes = []
+        for failsafes in (pair, pair[::-1]):
+            flight = Watched(phase)
+            for failsafe in failsafes:
+                flight.fails(failsafe)
+            outcomes.append((flight.failsafes.reaction, flight.phase, flight.commands))
+        assert outcomes[0] == outcomes[1], pair
+        assert outcomes[0][0] is phase.state.reaction(max(failsafe.reaction for failsafe in pair))
 
 
 def test_failsafe_after_the_end_is_left_alone():

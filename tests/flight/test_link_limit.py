@@ -39,10 +39,10 @@ def test_latency_limit_that_is_set_below_that_of_any_loss_does_not_rise_with_the
         assert latency_limit(strict, loss, PERIOD) == pytest.approx(strict.latency_limit)
 
 
-def test_ages_that_losses_may_add_are_half_of_what_the_loop_bears(loop):
+def test_ages_that_losses_may_add_are_a_third_of_what_the_loop_bears(loop):
     for latency, age in zip((SETTINGS.latency_limit, SETTINGS.latency_any_loss), SETTINGS.loss_age, strict=True):
         margin = expected_extra_age(loop.loss_margin(steps(latency)), PERIOD)
-        assert age / margin == pytest.approx(0.5, abs=0.05)
+        assert age / margin == pytest.approx(1 / 3, abs=0.03)
 
 
 def test_growth_without_loss_is_that_of_the_loop_whatever_the_delay_that_is_compensated(loop):
@@ -54,6 +54,19 @@ def test_growth_without_loss_is_that_of_the_loop_whatever_the_delay_that_is_comp
 def test_loop_whose_delay_is_not_compensated_is_unstable_beyond_its_margin(loop):
     margin = loop.delay_margin()
     assert loop.spectral_radius(margin - 0.002) < 1.0 < loop.spectral_radius(margin + 0.002)
+
+
+@pytest.mark.parametrize("share", [1 / 3, 1.0, 1.6])
+def test_loop_bears_a_lost_setpoint_that_it_does_not_know_of_whatever_the_payload(loop, share):
+    mass = share * SYSTEM.payload.mass
+    assert loop.spectral_radius(0.0, mass) < 1.0
+    assert loop.delay_margin(mass) > PERIOD
+
+
+def test_delay_of_whole_periods_is_the_limit_of_one_that_is_a_little_shorter(loop):
+    for periods in (1, 2):
+        exactly = loop.spectral_radius(periods * PERIOD)
+        assert loop.spectral_radius(periods * PERIOD - 1e-6) == pytest.approx(exactly, rel=1e-3)
 
 
 def test_table_of_the_page_is_the_computed_one():

@@ -8,41 +8,19 @@ from page_tables import markdown_table
 
 from gcs.config import SystemConfig
 from gcs.config.flight_settings import DEFAULTS
-from gcs.flight.condition import Reaction
 from gcs.flight.delivery import DeliveryAlarm
 from gcs.flight.detectors import MonitorAlarm
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.guarantee import GuaranteeAlarm
 from gcs.flight.phase import Phase
 from gcs.mavlink import px4
+from gcs.mavlink.team_failsafe import Reaction, TeamState
 from vehicle_sim.autopilot import failsafe as coupled
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.free import failsafe as free
 from vehicle_sim.autopilot.free import parameters as names
 from vehicle_sim.autopilot.vehicle_parameters import vehicle_parameters
 
-HOLD, OFFBOARD, LAND = (f"`{px4.mode_name(mode)}`" for mode in (px4.MODE_HOLD, px4.MODE_OFFBOARD, px4.MODE_LAND))
-STATES = [
-    {
-        "state": "on ground", "mode of the vehicles": f"{HOLD}, disarmed",
-        "begins": "at the start, and when all are disarmed; `REFUSE` remains here, `DISARM` leads here",
-        "flown by": "nobody",
-    },
-    {
-        "state": "controlled", "mode of the vehicles": OFFBOARD,
-        "begins": "with arming; `RETURN` and `BRAKE_AND_LAND` remain here", "flown by": "the ground",
-    },
-    {
-        "state": "stop and hold", "mode of the vehicles": HOLD,
-        "begins": "by `AUTONOMOUS_LANDING` of the ground, or `offboard_loss` on board",
-        "flown by": "each vehicle, by the stop plan",
-    },
-    {
-        "state": "descent", "mode of the vehicles": LAND,
-        "begins": "at the time in the stop plan, or by `data_link_loss` on board",
-        "flown by": "each vehicle, until it stands and disarms",
-    },
-]  # fmt: skip
 REACTIONS = [reaction for reaction in Reaction if reaction]
 
 
@@ -75,9 +53,14 @@ This page is made from the code by `make docs`. Thresholds are those of the defa
 What ends or changes a flight is in two tables. The [ground's](#failsafes-of-the-ground) is evaluated on the whole team,
 and acts by commands to all vehicles. The [vehicles'](#failsafes-of-a-vehicle) is evaluated on board, each for itself,
 and acts where the ground does not reach them any more: they do the same at the same time, as each has the same stop
-plan. So the team is in one of these states, whichever of the two led to it:
+plan. Both act by one table of states (`gcs/mavlink/team_failsafe.py`). Each has one next state, which the ground
+commands by the most severe of its reactions, and a vehicle enters by its failsafe, after the time of a parameter:
 
-{markdown_table(STATES)}
+{states()}
+`HOLD` ends at the time in the stop plan, or without a plan the parameter's time after the loss; the ground commands
+`LAND` then. `LAND` ends with the touch-down. Where a state does not allow a reaction, the nearest that it allows is
+made; `END_CONTROL` is allowed in each.
+
 Only `offboard_loss` can end in the state before: a vehicle flies set-points again when two arrive. Where the ground has
 seen that it left them (`offboard_left`), it commands all to land.
 
@@ -88,9 +71,6 @@ conditions the one with the most severe reaction counts; a reaction that is unde
 one. Of equally severe ones that of the whole team counts, then that of the first vehicle, then the order of the table.
 
 {reactions}
-What is done for a reaction depends on the phase of the flight:
-
-{by_phase()}
 {failsafes}
 ## Failsafes of a vehicle
 
@@ -120,16 +100,17 @@ ground" is 0.3 m above it.
 {alarms}"""
 
 
-def by_phase() -> str:
-    """Return the table of what is done for each reaction; phases in which the same is done share a row."""
-    alike: dict[tuple[Reaction, ...], list[str]] = {}
-    for phase in Phase:
-        if phase is not Phase.ENDED:
-            alike.setdefault(tuple(reaction.in_phase(phase) for reaction in REACTIONS), []).append(phase.value)
+def states() -> str:
+    """Return the table of the team's states."""
     return markdown_table([
-        {"phase": ", ".join(phases)}
-        | {f"`{each.name}`": f"`{done.name}`" for each, done in zip(REACTIONS, reactions, strict=True)}
-        for reactions, phases in alike.items()
+        {
+            "state": f"`{state.name}`", "mode of the vehicles": f"`{px4.mode_name(state.mode)}`",
+            "phases": ", ".join(each.value for each in Phase if each.state is state and each is not Phase.ENDED),
+            "reactions": " to ".join(f"`{each.name}`" for each in dict.fromkeys(state.reactions)),
+            "failsafe on board": ", ".join(f"`{row.name}`" for row in coupled.FAILSAFES if row.state is state),
+            "timer": state.timer and f"`{state.timer}`", "next": f"`{state.next.name}`",
+        }
+        for state in TeamState
     ])  # fmt: skip
 
 
@@ -140,7 +121,8 @@ def of_vehicles(failsafes: Sequence[coupled.Failsafe[Any]], *, free: bool) -> st
     return markdown_table([
         {
             "failsafe": f"`{row.name}`", "condition": row.meaning, "parameter": f"`{row.parameter}`",
-            "default": f"{parameters[row.parameter]:g}", "action": row.reaction, "STATUSTEXT": row.notice,
+            "default": f"{parameters[row.parameter]:g}", "next state, or action": row.reaction,
+            "STATUSTEXT": row.notice,
         }
         for row in failsafes
     ])  # fmt: skip

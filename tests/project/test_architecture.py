@@ -208,7 +208,10 @@ def test_settings_module_imports_mathematics_only(path):
     assert all(name.startswith("idc_controller.") for name, _ in sub_packages_imported(path))
 
 
-PROTOCOL = {"address", "codec", "frames", "layout", "lockstep", "messages", "newer_messages", "px4", "stop_plan", "udp"}
+PROTOCOL = {
+    "address", "codec", "frames", "layout", "lockstep", "messages", "newer_messages", "px4", "stop_plan",
+    "team_failsafe", "udp",
+}  # fmt: skip
 """Modules of gcs.mavlink that both ends of the wire share; the others are the ground's links."""
 
 

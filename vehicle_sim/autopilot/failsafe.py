@@ -1,6 +1,6 @@
-"""A vehicle's failsafes, which act without the ground: condition, parameter, action, as one table.
+"""A vehicle's failsafes, which act without the ground: condition, parameter, action.
 
-The ground's: ``gcs/flight/failsafe.py``. ``docs/failsafes.md`` is made from both.
+The ground's: ``gcs/flight/failsafe.py``; the states that both lead to: ``gcs/mavlink/team_failsafe.py``.
 """
 
 from collections.abc import Callable, Sequence
@@ -9,6 +9,7 @@ from itertools import groupby
 from typing import Generic, TypeVar
 
 from gcs.mavlink import px4
+from gcs.mavlink.team_failsafe import TeamState
 from vehicle_sim.autopilot.flight_state import FlightState
 
 S = TypeVar("S", bound=FlightState, contravariant=True)
@@ -32,6 +33,8 @@ class Failsafe(Generic[S]):
     action: Callable[[S, float], None]
     notice: str
     """STATUSTEXT to the operator; empty: none."""
+    state: TeamState | None = None
+    """State of the team that it ends, for the next one; None: it is of free vehicles alone."""
 
 
 Table = Sequence[tuple[Callable[[S, float], bool], Sequence[Failsafe[S]]]]
@@ -61,97 +64,59 @@ def setpoints_lost(state: FlightState, now: float) -> bool:
     return state.mode == px4.MODE_OFFBOARD and not state.failsafe and not state.has_fresh_setpoints(now)
 
 
-def _in_flight(state: FlightState) -> bool:
-    return state.armed and state.is_up
-
-
-def armed(state: FlightState) -> bool:
-    """Return True if the rotors may turn."""
-    return state.armed
-
-
-def always(state: FlightState) -> bool:
-    """Return True."""
-    return True
-
-
 def _data_link_lost(state: FlightState, now: float) -> bool:
     return (
         state.mode == px4.MODE_HOLD
-        and state.hold is not None
-        and not state.is_descending
         and now - state.link_time > state.parameters[px4.PARAM_LINK_LOSS]
         and state.parameters[px4.PARAM_LINK_LOSS_ACTION] == px4.LINK_LOSS_LAND
     )
 
 
-def _hold_then_land(state: FlightState, now: float) -> None:
+def _hold(state: FlightState, now: float) -> None:
     state.failsafe = True
-    state.begin_hold(now, descent_start=now + state.parameters[px4.PARAM_LAND_DELAY])
-
-
-def disarm(state: FlightState, now: float) -> None:
-    """Stop the rotors."""
-    state.stop()
+    state.begin_hold(now, descent_start=now + state.parameters[TeamState.HOLD.timer])
 
 
 def _land(state: FlightState, now: float) -> None:
-    if state.armed and state.land.in_air:
-        state.begin_descent(now)
-    elif state.armed:
-        state.stop()
+    state.begin_descent(now)
     state.failsafe = True
 
 
-OFFBOARD_LOSS_ON_GROUND: tuple[Failsafe[FlightState], ...] = (
-    Failsafe(
-        "offboard_loss_on_ground",
-        "OFFBOARD, armed on the ground, no set-point for that time",
-        "disarm",
-        px4.PARAM_SETPOINT_LOSS,
-        setpoints_lost,
-        armed,
-        disarm,
-        "Set-points lost on the ground: disarmed",
-    ),
-    Failsafe(
-        "offboard_loss_disarmed",
-        "OFFBOARD, disarmed, no set-point for that time",
-        "HOLD (already disarmed)",
-        px4.PARAM_SETPOINT_LOSS,
-        setpoints_lost,
-        always,
-        disarm,
-        "",
-    ),
-)
-"""Of any vehicle; to follow that of one in the air."""
+def _disarm(state: FlightState, now: float) -> None:
+    state.stop()
 
-FAILSAFES: tuple[Failsafe[FlightState], ...] = (
-    Failsafe(
-        "offboard_loss",
-        "OFFBOARD, armed and off the ground, no set-point for that time",
-        f"HOLD by the stop plan, LAND at its time, without one after `{px4.PARAM_LAND_DELAY}`; ends when two "
-        f"set-points arrive within `{px4.PARAM_SETPOINT_LOSS}`",
-        px4.PARAM_SETPOINT_LOSS,
-        setpoints_lost,
-        _in_flight,
-        _hold_then_land,
-        "Set-points lost: braking and holding",
-    ),
-    *OFFBOARD_LOSS_ON_GROUND,
-    Failsafe(
-        "data_link_loss",
-        f"HOLD in flight, no message of the ground in control for that time, and `{px4.PARAM_LINK_LOSS_ACTION}` is "
-        f"{px4.LINK_LOSS_LAND}",
-        "LAND",
-        px4.PARAM_LINK_LOSS,
-        _data_link_lost,
-        always,
-        _land,
-        "No ground station: descending",
-    ),
+
+_ENTRY = {TeamState.HOLD: _hold, TeamState.LAND: _land, TeamState.DISARMED: _disarm}
+
+
+def _end_of(
+    state: TeamState, name: str, meaning: str, parameter: str, cause: Callable[[FlightState, float], bool], notice: str
+) -> Failsafe[FlightState]:
+    """Return the failsafe that ends ``state`` of the team for the next one."""
+    return Failsafe(
+        name, meaning, f"`{state.next.name}`", parameter, cause, lambda own: own.team_state is state,
+        _ENTRY[state.next], notice, state,
+    )  # fmt: skip
+
+
+# fmt: off
+OFFBOARD_LOSS_ON_GROUND = (
+    _end_of(TeamState.ARMED, "offboard_loss_on_ground", "OFFBOARD, armed on the ground, no set-point for that time",
+        TeamState.ARMED.timer, setpoints_lost, "Set-points lost on the ground: disarmed"),
+    _end_of(TeamState.DISARMED, "offboard_loss_disarmed", "OFFBOARD, disarmed, no set-point for that time",
+        TeamState.ARMED.timer, setpoints_lost, ""),
 )
+"""Of any vehicle."""
+
+FAILSAFES = (
+    _end_of(TeamState.OFFBOARD, "offboard_loss", "OFFBOARD, armed and off the ground, no set-point for that time",
+        TeamState.OFFBOARD.timer, setpoints_lost, "Set-points lost: braking and holding"),
+    *OFFBOARD_LOSS_ON_GROUND,
+    _end_of(TeamState.HOLD, "data_link_loss",
+        f"HOLD in flight, no message of the ground in control for that time, and `{px4.PARAM_LINK_LOSS_ACTION}` is "
+        f"{px4.LINK_LOSS_LAND}", px4.PARAM_LINK_LOSS, _data_link_lost, "No ground station: descending"),
+)
+# fmt: on
 
 COUPLED = by_cause(FAILSAFES)
 """Of a vehicle on a payload."""

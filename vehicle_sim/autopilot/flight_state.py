@@ -8,6 +8,7 @@ from gcs.config.vehicle_settings import AutopilotSettings
 from gcs.mavlink import px4
 from gcs.mavlink.services.parameter_table import ParameterTable
 from gcs.mavlink.stop_plan import LAG_MAX
+from gcs.mavlink.team_failsafe import TeamState
 from idc_controller.rotations_float import Vector, euler_of
 from vehicle_sim.autopilot.actuation import Actuation
 from vehicle_sim.autopilot.airframe import Airframe
@@ -19,6 +20,7 @@ from vehicle_sim.autopilot.setpoints import StopPlan
 from vehicle_sim.world.sensors import Measurement
 
 TIME_TOLERANCE = 1e-6  # s: sums of steps are not exact
+_SETPOINT_LOSS = TeamState.OFFBOARD.timer
 
 
 class PositionTarget(NamedTuple):
@@ -76,6 +78,15 @@ class FlightState:
             return px4.MODE_LAND
         return px4.MODE_HOLD if self.failsafe else self.mode
 
+    @property
+    def team_state(self) -> TeamState:
+        """State of the team in which this vehicle is."""
+        if not self.armed:
+            return TeamState.DISARMED
+        if self.hold is not None:
+            return TeamState.LAND if self.is_descending else TeamState.HOLD
+        return TeamState.OFFBOARD if self.is_up else TeamState.ARMED
+
     def has_position(self, now: float) -> bool:
         """Return True if usable samples come, and the position is measured."""
         return self.navigation.is_valid(now)
@@ -88,11 +99,11 @@ class FlightState:
     @property
     def setpoint_loss_time(self) -> float:
         """Seconds without set-points until the vehicle brakes and holds."""
-        return self.parameters[px4.PARAM_SETPOINT_LOSS]
+        return self.parameters[_SETPOINT_LOSS]
 
     def has_fresh_setpoints(self, now: float) -> bool:
         """Return True if the set-points of OFFBOARD have not stopped."""
-        return now - self.setpoints.last_time < self.parameters[px4.PARAM_SETPOINT_LOSS] - TIME_TOLERANCE
+        return now - self.setpoints.last_time < self.parameters[_SETPOINT_LOSS] - TIME_TOLERANCE
 
     @property
     def is_descending(self) -> bool:
@@ -153,7 +164,10 @@ class FlightState:
         self.hold = HoldController(plan, hover, lean, self.supported_thrust, self.airframe.g, settings)
 
     def begin_descent(self, now: float) -> None:
-        """Descend from where it is, or when the other vehicles do, where that is known."""
+        """Descend from where it is, or when the other vehicles do, where that is known; on the ground stop."""
+        if not self.land.in_air:
+            self.stop()
+            return
         if self.hold is None:
             self.begin_hold(now, descent_start=now)
         elif not (self.is_descending or self.hold.plan.is_common):

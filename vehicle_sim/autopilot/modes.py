@@ -54,10 +54,7 @@ def _hold(state: FlightState, custom_mode: int, now: float) -> Answer:
 def _land(state: FlightState, custom_mode: int, now: float) -> Answer:
     if not state.armed:
         return rejected_for_now("AUTO.LAND denied: not flying")
-    if state.land.in_air:
-        state.begin_descent(now)
-    else:
-        state.stop()
+    state.begin_descent(now)
     return ACCEPTED
 
 

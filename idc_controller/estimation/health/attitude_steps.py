@@ -59,6 +59,12 @@ def step_response(parameters: SystemParameters, time: float) -> Array:
     return np.asarray((expm(time * A) @ [0.0, 0.0, 0.0, 1.0])[:3])
 
 
+def _time_of_largest_rate(parameters: SystemParameters) -> float:
+    """Return the time (s) after a step of the attitude at which the vehicle turns fastest against it."""
+    times = np.linspace(0.0, 5.0 / parameters.attitude_kp**0.5, 101)
+    return float(times[np.argmin([step_response(parameters, time)[1] for time in times])])
+
+
 class AttitudeSteps:
     """Compares the attitudes of N UAVs with their body rates, from sample to sample."""
 
@@ -69,6 +75,8 @@ class AttitudeSteps:
         self._nominal = 2.0 * noise.attitude**2
         self._variances = np.full(parameters.number_of_uavs, self._nominal)
         """Of the differences of two attitudes, as they are at present (N,)."""
+        self._response_time = _time_of_largest_rate(parameters)
+        """Since a step (s): until then the rate of the turn against it rises."""
         self._last: dict[int, _Sample] = {}
         self._stuck: set[int] = set()
         """UAVs whose attitude has repeated itself although they turned: how far is not known."""
@@ -117,13 +125,13 @@ class AttitudeSteps:
         counted = candidate.latest is not None
         if persists is not counted:
             self.total[step.uav] += step.angle if persists else -step.angle
-        if persists and not stepped and sample.time - step.time < s.response_time:
+        if persists and not stepped and sample.time - step.time < self._response_time:
             self._candidates[step.uav] = candidate._replace(since=since, latest=sample)
 
     def _is_step(self, uav: int, jump: Array, interval: float) -> bool:
         """Return whether a ``jump`` (2,) after an ``interval`` (s) is none of the noise, which is followed."""
         s, square = self._settings, float(jump @ jump)
-        limit = self._quantile * float(np.sqrt(self._variances[uav])) + s.turn_error
+        limit = self._quantile * float(np.sqrt(self._variances[uav])) + s.turn_error * interval
         share = min(interval / s.noise_memory, 1.0)
         variance = self._variances[uav] + share * (min(0.5 * square, limit**2) - self._variances[uav])
         self._variances[uav] = max(variance, self._nominal)
@@ -150,7 +158,8 @@ class AttitudeSteps:
         change = latest.n_dot - before.n_dot - explained(step.uav, before.time, latest.time)
         turned = -float(change @ step.angle) / float(step.angle @ step.angle)
         elapsed = latest.time - step.time
-        first, last = (-step_response(self._parameters, t)[1] for t in (elapsed, elapsed + step.interval))
+        latest_end = min(elapsed + step.interval, self._response_time)
+        first, last = (-step_response(self._parameters, t)[1] for t in (elapsed, latest_end))
         return bool(s.response_min * first < turned < s.response_max * last)
 
 

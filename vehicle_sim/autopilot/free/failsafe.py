@@ -8,7 +8,7 @@ from vehicle_sim.autopilot.free.state import FENCE_HOLD, FENCE_RETURN, FENCE_WAR
 
 
 def _in_flight(state: FreeFlightState) -> bool:
-    return state.armed and state.land.in_air
+    return state.armed and state.is_up
 
 
 def _hold(state: FreeFlightState, now: float) -> None:

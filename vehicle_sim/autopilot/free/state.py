@@ -75,6 +75,11 @@ class FreeFlightState(FlightState):
         """Return True if it descends to the ground."""
         return self.flight is not None and self.flight.is_landing
 
+    @property
+    def is_up(self) -> bool:
+        """Return True if it is off the ground."""
+        return self.land.in_air
+
     def position_target(self, now: float) -> PositionTarget | None:
         """Return what the position control follows, and where that ends; None: an attitude is flown, or nothing."""
         reference, flight = self.reference, self.flight
