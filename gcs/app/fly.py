@@ -243,7 +243,7 @@ def ground_station(
     control = ControlLoop(
         stack.estimator(config, model), stack.controller(config, model, safety, stopwatch, guidance),
         ComputeTimes(stopwatch), stack.grounded_links(config, model),
-        stack.resting_place(config, model, obstacle_map, mission.area),
+        stack.resting_place(config, model, obstacle_map, mission.area), stack.descent(config),
     )  # fmt: skip
     alarms = AlarmLog(recorder.alarm, config.flight.monitor)
     flight = Flight(mission, Team(links, model.parameters), control, alarms, obstacle_map)

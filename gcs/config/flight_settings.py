@@ -45,7 +45,7 @@ class FailsafeSettings(SettingsTable):
     attitude_certainty: Share = 0.99  # probability, by the filter's covariance, that it is wrong by more than that
     pad_attitude_error: float = 0.05  # rad; between axes of vehicle and payload on the pad: how level cradles are
     tilt_time: float = 0.5  # s; for which the tilt must exceed its limit
-    descent_timeout: float = 15.0  # s; after the descent's planned end, with the payload still high
+    descent_timeout: float = 15.0  # s; after the descent's planned end, without a touchdown
     arm_timeout: float = 12.0  # s; until all vehicles are in OFFBOARD and armed
     disarm_timeout: float = 10.0  # s; until all are disarmed: heartbeats come once a second, and some are lost
     landing_timeout: float = setting(120.0, "s", "until all have landed autonomously", gt=0.0)
@@ -94,15 +94,9 @@ class TakeoffLandingSettings(SettingsTable):
     spool_up_time: float = 2.5  # s; from idle to hover thrust
     spool_down_time: float = 2.0  # s; from hover thrust to idle
     unload_time: float = 0.3  # s; in which the ground takes over the weight of a payload that has touched down
-    # of the payload's weight, that UAVs carry until their links are upright: with more of it a payload slides in wind
-    carried_share: Share = 0.24
+    friction: Share = 0.5  # least coefficient of friction of the ground: it holds a payload in the strongest wind
+    least_weight: Share = 0.37  # of the weight that was learnt, of a payload that loses its load where it is not learnt
     upright_lean: float = 0.05  # sine of a link's tilt that stays upright without thrust
-    # the same of a payload that slides: it stands on friction, which the wind exceeds
-    carried_share_sliding: Share = 0.06
-    slide_time: float = 1.0  # s; time constant with which it falls to that: longer than a payload takes to settle
-    # the same of a UAV without a position, which is off by less where its link pulls harder; with more of it a payload
-    # that has lost a load tips
-    carried_share_unlocated: Share = 0.5
     # m/s; of a payload at rest on the ground: six standard deviations of its unit's velocity
     rest_speed: float = 0.05
     lean_time: float = 1.0  # s; a link that moves on at its rate must be upright for so long, too
@@ -113,7 +107,6 @@ class TakeoffLandingSettings(SettingsTable):
     touch_height_near: float = 0.08  # m; a pad's height, where a bouncing payload is on the ground
     touch_depth_near: float = 0.03  # m; of the reference below it there
     touch_steps: int = 4  # control steps in a row that are a touchdown
-    touch_grace: float = 3.0  # s; after the descent's planned end, that are a touchdown as well
     touch_height: float = 1.0  # m; above which nothing is a touchdown
     lift_off_lag: float = 0.05  # m; of a climb behind its plan on the ground, from which the thrust grows on
     clear_height: float = 0.3  # m; below which the ground may carry part of the load

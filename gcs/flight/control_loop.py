@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple
@@ -14,7 +15,7 @@ from idc_controller.control.controller import Decision, IntegratedDecisionContro
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.grounded_links import N_ACC, N_DOT, OFF, S_DOT, GroundedLinks, LinkStates, N, S
 from idc_controller.estimation.measurements import PAYLOAD, Channel, Estimate, Measurement, Position
-from idc_controller.trajectory.stop_plan import Braking, StopPlan, stop_plan
+from idc_controller.trajectory.stop_plan import Braking, Descent, StopPlan, stop_plan
 from idc_controller.trajectory.trajectory import Trajectory
 
 
@@ -41,6 +42,7 @@ class Hold(NamedTuple):
 
 
 _HOLD = Hold()
+_DESCENT = Descent()
 
 
 class StepRecord(NamedTuple):
@@ -60,11 +62,15 @@ class ControlLoop:
         compute_times: ComputeTimes,
         links: GroundedLinks,
         brake: Callable[[float, Array], Braking] = lambda time, state: Braking(),
+        descent: Descent = _DESCENT,
     ) -> None:
-        """``brake``: the stop of a vehicle without set-points, see :mod:`idc_controller.trajectory.stop_plan`."""
+        """``brake``: the stop of a vehicle without set-points, and ``descent``: how it lands then.
+
+        See :mod:`idc_controller.trajectory.stop_plan`.
+        """
         self.estimator, self.controller = estimator, controller
         self.links = links
-        self.compute_times, self.brake = compute_times, brake
+        self.compute_times, self.brake, self._descent = compute_times, brake, descent
         self.stop_plans: deque[StopPlan] = deque()
         """Of the control steps since the last set-points that all vehicles have received; the first one goes out."""
 
@@ -90,14 +96,15 @@ class ControlLoop:
         """
         p, layout = self.controller.parameters, self.controller.layout
         x, drag, thrusts = np.zeros((6, p.number_of_uavs, 2)), np.zeros(2), np.zeros(p.number_of_uavs)
+        unlocated: frozenset[int] = frozenset()
         if estimate is not None:
             parts = (layout.s, layout.s_dot, layout.n, layout.n_dot, layout.n_acc)
             forces, thrusts = estimate.uav_force[:, :2], p.hover_thrust
             drag = np.median(self.controller.load.on_uavs, axis=0)[:2]
             x[[S, S_DOT, N, N_DOT, N_ACC]] = [estimate.x[part].reshape(-1, 2) for part in parts]
             x[OFF] = (forces - np.median(forces, axis=0)) / thrusts[:, None]
-        unlocated = self.estimator.health.unusable_poses(Position, time) - {PAYLOAD}
-        self.links.start(time, payload, x, thrusts, drag, unlocated)
+            unlocated = self.estimator.health.unusable_poses(Position, time) | self.links.unlocated(time)
+        self.links.start(time, payload, x, thrusts, drag, unlocated - {PAYLOAD})
 
     def add_to_links(self, measurement: Measurement) -> None:
         """Take a measurement over a payload on the ground, without channels that are isolated."""
@@ -141,20 +148,46 @@ class ControlLoop:
         self.compute_times.shift(decision.compute_time.planner, Part.CONTROL, Part.PLANNING)
         return StepRecord(estimate, decision)
 
-    def send(self, record: StepRecord, effective: float, leaves: Array, hold: Hold = _HOLD) -> None:
+    def send(
+        self,
+        record: StepRecord,
+        effective: float,
+        leaves: Array,
+        hold: Hold = _HOLD,
+        until_landing: float = math.inf,
+    ) -> None:
         """Take over the set-points of a step in the air, which leave at ``leaves`` (N,) and act at ``effective``.
+
+        Without set-points the vehicles hold for a while, but land when the payload would: in ``until_landing`` (s),
+        zero while it lands. Where that becomes known late the descent of one plan after the other is brought forward
+        no faster than time passes, so that vehicles with plans that differ by a round trip still descend together.
 
         The stop plan goes on only with what every vehicle is known to have received. So a vehicle that is cut off, and
         all that are later, have plans that differ by a round trip of the links at most, whichever each received last.
         """
         self.compute_times.lap(Part.MONITORING)
         self.estimator.setpoints.add(effective, record.decision.u, leaves)
-        plan = stop_plan(self.controller.parameters, record.decision.flat, effective, record.estimate.x, self.brake)
-        plans = self.stop_plans
-        plans.append(
-            plan._replace(descent=effective + hold.duration, hover_forces=self.controller.hover_forces(effective))
-        )
+        plans, forces, flat = self.stop_plans, self.controller.hover_forces(effective), record.decision.flat
+        earliest = plans[-1].descent - (effective - plans[-1].start) if plans else -math.inf
+        landing = self._descent if until_landing <= 0.0 and earliest <= effective else None
+        plan = stop_plan(self.controller.parameters, flat, effective, record.estimate.x, self.brake, landing)
+        if landing is None:
+            plan = plan._replace(descent=max(effective + min(hold.duration, until_landing), earliest))
+        plans.append(plan._replace(hover_forces=forces))
         received = self.estimator.setpoints.received_by_all(effective, hold.unconfirmed_max)
         while len(plans) > 1 and plans[1].start <= received:
             plans.popleft()
+        self.compute_times.lap(Part.STOP_PLAN)
+
+    def stand(self, record: StepRecord, effective: float, links: LinkStates, setpoints: Setpoints) -> None:
+        """Take over ``setpoints`` over a payload that has touched down, which act at ``effective`` (s).
+
+        Vehicles without others descend at once, with the thrust that they have: what they lifted would fall again.
+        """
+        self.compute_times.lap(Part.MONITORING)
+        layout, x = self.controller.layout, record.estimate.x.copy()
+        x[layout.s], x[layout.s_dot] = links.x[S].ravel(), links.x[S_DOT].ravel()
+        plan = stop_plan(self.controller.parameters, record.decision.flat, effective, x, landing=self._descent)
+        self.stop_plans.clear()
+        self.stop_plans.append(plan._replace(hover_forces=setpoints.thrusts[:, None] * setpoints.directions))
         self.compute_times.lap(Part.STOP_PLAN)

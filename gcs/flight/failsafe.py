@@ -143,5 +143,5 @@ class Failsafe(AlarmCode):
         "the payload is still on the ground, below its plan by more than the margin and the bound on its deviation")
     DESCENT_STALLED = (Check.ESTIMATE, in_air.descent_stalled, Reaction.AUTONOMOUS_LANDING,
         "check wind, load and positions",
-        "the payload is still high {descent_timeout:g} s after the planned end of its descent")
+        "the payload has not touched down {descent_timeout:g} s after the planned end of its descent")
     # fmt: on

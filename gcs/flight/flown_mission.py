@@ -65,6 +65,11 @@ class FlownMission:
         assert self.trajectory is not None
         return Phase(self.trajectory.phase(self.progress(time)))
 
+    def until_landing(self, time: float) -> float:
+        """Return the time (s) to the final descent of a flight in the air; zero in it, inf while it is not known."""
+        assert self.trajectory is not None
+        return max(self.trajectory.landing_from - self.progress(time), 0.0)
+
     def descent(self, time: float) -> tuple[float, Trajectory]:
         """Return the progress (s) along the trajectory of a flight that lands, and that trajectory."""
         assert self.trajectory is not None

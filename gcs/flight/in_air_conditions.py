@@ -95,9 +95,7 @@ def climb_stalled(system: System, moment: Moment) -> Trigger | None:
 
 
 def descent_stalled(system: System, moment: Moment) -> Trigger | None:
-    if moment.estimate is None or moment.descent is None:
-        return None
-    if not system.payload.is_descent_stalled(*moment.descent, moment.estimate):
+    if moment.descent is None or not system.payload.is_descent_stalled(*moment.descent):
         return None
     _, descent = moment.descent
     below = descent.position(descent.end)

@@ -8,7 +8,7 @@ from gcs.config.flight_settings import TakeoffLandingSettings
 from gcs.flight.condition import System
 from gcs.flight.control_loop import ControlLoop, Setpoints, StepRecord
 from gcs.flight.flown_mission import FlownMission
-from gcs.flight.spool import SpoolUp, Touchdown
+from gcs.flight.spool import Footing, SpoolUp, Touchdown
 from idc_controller.arrays import Array
 from idc_controller.estimation.grounded_links import LinkStates
 from idc_controller.estimation.measurements import Estimate, Measurement
@@ -57,8 +57,10 @@ class PayloadControl:
             if self._spool_up is not None:
                 self._spool_up.detector.add(taken)
         used = [used for taken in measurements if (used := estimator.add(taken)) is not None]
-        if not self._flown.in_air:
-            for taken in used:
+        for taken in used:
+            if self._flown.in_air:
+                self._loop.links.locate(taken)
+            else:
                 self._loop.add_to_links(taken)
         return used
 
@@ -125,12 +127,14 @@ class PayloadControl:
             tilts = decision.u[loop.controller.layout.n_setpoint].reshape(-1, 2)
             loop.links.command(effective, tilts, thrusts)
         setpoints = Setpoints(decision.directions, thrusts)
+        if links is not None and self._touchdown is not None:
+            loop.stand(record, effective, links, setpoints)
         if self._spool_up is not None:
             self._spool_up.sent(effective, setpoints, leaves, in_air=in_air)
             if in_air and system.payload.is_clear(estimate):
                 self._spool_up = None
         if in_air:
-            loop.send(record, effective, leaves, system.team.hold)
+            loop.send(record, effective, leaves, system.team.hold, self._flown.until_landing(time))
             places = loop.estimator.measurement_model.vehicles(time, decision.flat.x[0])
             contradicted = loop.estimator.health.uav_positions_isolated
             planned_down = float(decision.flat.payload[0, 0, 2])
@@ -161,7 +165,12 @@ class PayloadControl:
             RestTrajectory(estimate.x[layout.r_0], time),
             float(estimate.x[layout.Theta][2]),
             time,
-            loop.controller.parameters.m * self._system.team.parameters.g,
+            Footing.of(
+                loop.controller.parameters,
+                self._system.settings,
+                self._settings,
+                loop.controller.settings.ground.tilt_max,
+            ),
             self._settings,
         )
         loop.estimator.setpoints.add(estimate.time, None)

@@ -53,7 +53,7 @@ class PayloadMonitor:
         near = self.height(estimate) < s.touch_height_near
         on_ground = depth > s.touch_depth_near if near else depth > s.touch_depth and at_rest
         self._touch_steps = self._touch_steps + 1 if on_ground else 0
-        return self._touch_steps >= s.touch_steps or progress > descent.end + s.touch_grace
+        return self._touch_steps >= s.touch_steps
 
     def has_lifted_again(self, rise: float, limit: float) -> bool:
         """Return whether the payload rises faster than ``limit`` (m/s), in two control steps in a row.
@@ -63,7 +63,6 @@ class PayloadMonitor:
         self._rise_steps = self._rise_steps + 1 if rise > limit else 0
         return self._rise_steps > 1
 
-    def is_descent_stalled(self, progress: float, descent: Trajectory, estimate: Estimate) -> bool:
-        """Return whether the payload is still high long after the planned end of ``descent``."""
-        late = progress - descent.end > self._settings.failsafe.descent_timeout
-        return late and self.height(estimate) > self._settings.takeoff_landing.touch_height
+    def is_descent_stalled(self, progress: float, descent: Trajectory) -> bool:
+        """Return whether the payload is still in the air long after the planned end of ``descent``."""
+        return progress - descent.end > self._settings.failsafe.descent_timeout

@@ -31,6 +31,7 @@ from idc_controller.safety.filter_protocol import SafetyFilter
 from idc_controller.safety.planner import give_way_time
 from idc_controller.safety.safety_filter import AvoidanceFilter
 from idc_controller.safety.settings import PlannerSettings
+from idc_controller.trajectory.stop_plan import Descent
 
 
 def linear_model(config: SystemConfig) -> LinearModel:
@@ -184,6 +185,11 @@ def resting_place(
     """Return the choice of where a team without set-points comes to rest, clear of ``obstacles`` and in ``area``."""
     settings = replace(config.guidance.resting_place, margin=config.avoidance.margin)
     return RestingPlace(model.parameters, obstacles, settings, config.braking(), area)
+
+
+def descent(config: SystemConfig) -> Descent:
+    """Return how the vehicles descend without the ground."""
+    return Descent(config.autopilot.hold.land_speed, config.autopilot.hold.descent_ramp)
 
 
 def controller(

@@ -6,8 +6,7 @@ The ground holds the payload, so the model of flight does not apply: each UAV is
 
 with the link in tension as soon as the thrust f exceeds the UAV's weight; b and w as in
 :mod:`idc_controller.estimation.grounded_links`. One linear-quadratic regulator serves the whole range of thrust, about
-the tilt that holds the link; the payload's own error is left to the ground. A UAV without a position does what the
-others do, as its link leant like theirs in the air: the tension of its link alone takes up the difference.
+the tilt that holds the link; the payload's own error is left to the ground.
 """
 
 import numpy as np
@@ -38,11 +37,6 @@ class GroundController:
         holding = -links.x[OFF] - (links.drag + (f - weight) * lean) / np.maximum(f, weight)
         states = np.stack([links.x[S] - lean, links.x[S_DOT] - rate, links.x[N] - holding, *links.x[N_DOT:]], axis=1)
         tilts = holding - np.einsum("ik,ikc->ic", self.gains, states)
-        known = np.broadcast_to(links.located, len(tilts))
-        if known.any() and not known.all():  # the others' accelerations, for what their links do: its own is not known
-            off, taut, s = links.x[OFF], f - weight, links.x[S]
-            pull = (f * (tilts + off) + taut * s)[known].mean(axis=0)
-            tilts[~known] = ((pull - taut * s[known].mean(axis=0)) / np.maximum(f, weight) - off)[~known]
         size = np.maximum(np.linalg.norm(tilts, axis=1, keepdims=True), self._tilt_max)
         u = reference.u[0].copy()
         u[layout.n_setpoint] = (tilts * (self._tilt_max / size)).ravel()

@@ -20,7 +20,7 @@ import numpy as np
 
 from idc_controller.arrays import Array, Mask
 from idc_controller.estimation.health.attitude_steps import AttitudeStep
-from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise, Position
 from idc_controller.estimation.settings import GroundedLinksSettings
 from idc_controller.parameters import SystemParameters
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
@@ -84,9 +84,13 @@ class _Payload:
             off = np.clip(measurement.pose - predicted, -s.payload_step_max, s.payload_step_max)
             self._time, self._position = measurement.time, predicted + s.payload_share * off
 
-    def attachment(self, place: Array) -> tuple[Array, Array]:
-        """Return position (3,) (m) and velocity (3,) (m/s) of the ``place`` (3,) in its frame."""
-        return self._position + self._turn @ place, self._velocity + self._turn @ np.cross(self._rates, place)
+    def positions(self, places: Array) -> Array:
+        """Return the positions (K, 3) (m) of ``places`` (K, 3) in its frame."""
+        return np.asarray(self._position + places @ self._turn.T)
+
+    def velocities(self, places: Array) -> Array:
+        """Return the velocities (K, 3) (m/s) of ``places`` (K, 3) in its frame."""
+        return np.asarray(self._velocity + np.cross(self._rates, places) @ self._turn.T)
 
 
 class GroundedLinks:
@@ -135,7 +139,8 @@ class GroundedLinks:
             unlocated: UAVs (from 0) without a position.
         """
         self._payload = _Payload(time, payload, self._settings)
-        self._times[:] = self._located[:] = time
+        self._times[:] = time
+        self._located[:] = time
         self._located[[*unlocated]] = -math.inf
         self._common = np.median(x[OFF], axis=0)
         self._own = x[OFF] - self._common
@@ -165,17 +170,20 @@ class GroundedLinks:
             # Without offsets: the median of a few of which one is far off is not in the middle of the others.
             common = np.median(errors[located] - self._offsets[located], axis=0)
             self._common = self._common + share * (common - self._common)
-            self._own[located] += share * (errors[located] - self._common - self._own[located])
+            self._own[located] += share * (errors[located] - common - self._own[located])
+        else:
+            common = self._common
         found = np.linalg.norm(self._own - self._offsets, axis=1, keepdims=True) > s.error_min
-        errors[~located] = np.where(found, self._own, self._offsets)[~located] + self._common
+        errors[~located] = np.where(found, self._own, self._offsets)[~located] + common
 
     def add(self, measurement: Measurement) -> None:
         """Take a ``measurement`` of the payload's unit, or of a UAV unless a later one was taken before."""
         i, p = measurement.source, self._parameters
         if i == PAYLOAD:
-            before = self._attachment_velocities()
+            before = self._payload.velocities(p.p)
             self._payload.add(measurement)
-            self._x[:, S_DOT] += (self._attachment_velocities() - before)[:, :2] / p.l[:, None]
+            # A payload that is stopped, or turned, by the ground moves the feet of the links.
+            self._x[:, S_DOT] += (self._payload.velocities(p.p) - before)[:, :2] / p.l[:, None]
             return
         if not self._times[i] <= measurement.time <= self._commands[-1].time + _AHEAD_MAX:
             return
@@ -185,7 +193,7 @@ class GroundedLinks:
                 direction = -rotation_from_quaternion(measurement.pose)[:2, 2]
                 self._update(i, N, direction, self._direction_variance)
             return
-        position, velocity = self._payload.attachment(p.p[i])
+        position, velocity = self._payload.positions(p.p[i]), self._payload.velocities(p.p[i])
         if measurement.has_pose or measurement.has_motion:
             self._located[i] = measurement.time
         if measurement.has_pose:
@@ -193,15 +201,20 @@ class GroundedLinks:
         if measurement.has_motion:
             self._update(i, S_DOT, (velocity - measurement.motion)[:2] / p.l[i], self._variance[1] / p.l[i] ** 2)
 
-    def _attachment_velocities(self) -> Array:
-        """Return the velocities (N, 3) (m/s) of the attachment points: links lean as the payload slides."""
-        return np.array([self._payload.attachment(place)[1] for place in self._parameters.p])
-
     def take_attitude_step(self, step: AttitudeStep) -> None:
         """Take a ``step`` of a UAV's attitude, by which its thrust is off its attitude from now on."""
         self._x[step.uav, OFF] -= step.angle
         self._own[step.uav] -= step.angle
         self._offsets[step.uav] -= step.angle
+
+    def locate(self, measurement: Measurement) -> None:
+        """Take a ``measurement`` in the air: which UAVs have a position."""
+        if isinstance(measurement, Position) and measurement.source != PAYLOAD and measurement.has_pose:
+            self._located[measurement.source] = measurement.time
+
+    def unlocated(self, time: float) -> frozenset[int]:
+        """Return the UAVs without a position at ``time`` (s)."""
+        return frozenset(np.flatnonzero(time - self._located > self._settings.position_gap).tolist())
 
     @property
     def _is_located(self) -> Mask:

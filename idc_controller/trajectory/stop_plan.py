@@ -4,6 +4,9 @@ All of them start from one moment of one reference and take the same time, so th
 between them. Along each axis the position is the quartic that takes over position, velocity and acceleration and ends
 without velocity and acceleration; a quartic is a Bezier curve of five control points, as many as fit into a message.
 
+A landing is not held up: of the speed at which the payload sinks, as much as that of the vehicles' own descent remains,
+and they go on from it.
+
 In wind the team is not where the reference has it. The plan starts where the team is: all of it is moved alike, so
 that no UAV is biased towards a place that the payload was meant to have.
 """
@@ -39,6 +42,13 @@ class Braking(NamedTuple):
         return self.share * self.settings.usual_duration(velocity)
 
 
+class Descent(NamedTuple):
+    """How the vehicles descend after a stop: to a ``speed`` (m/s), from rest in a time ``ramp`` (s)."""
+
+    speed: float = 0.5
+    ramp: float = 1.0
+
+
 class StopPlan(NamedTuple):
     """Bezier curves that bring all UAVs to rest, over the same ``duration`` (s) from the same ``start`` (s)."""
 
@@ -69,11 +79,13 @@ def stop_plan(
     time: float,
     x: Array | None = None,
     choose: Callable[[float, Array], Braking] = lambda time, state: Braking(),
+    landing: Descent | None = None,
 ) -> StopPlan:
     """Return the stop plan from the first instant of the reference ``flat``, which is ``time`` (s).
 
     ``x`` (12 + 11 N,) is the state then; None: that of the reference. ``choose`` says how to brake, by the time and
-    position, velocity and acceleration (3, 3) of a payload that hangs at rest below the UAVs.
+    position, velocity and acceleration (3, 3) of a payload that hangs at rest below the UAVs. ``landing``: the payload
+    lands, and goes on so; None: the time of its descent is not known.
     """
     layout, links = _layout(parameters.number_of_uavs), flat.links
     error = np.zeros(layout.size) if x is None or not math.isfinite(x @ x) else x - flat.x[0]
@@ -84,5 +96,11 @@ def stop_plan(
     # The UAVs come to rest by their own motion, and the payload below them, which may swing now.
     state, below = motions[:-1], motions[-1]
     braking = choose(time, below)
-    duration = braking.duration(below[1])
-    return StopPlan(time, duration, control_points(state, np.array([duration]), np.array([braking.aside])))
+    duration, begun = braking.duration(below[1]), math.inf
+    if landing is not None:  # as if it had begun from rest
+        kept = min(max(float(below[1, 2]), 0.0), landing.speed)
+        begun = kept / landing.speed * landing.ramp
+        state[:, :2, 2] -= 0.5 * kept * begun, kept
+        state[:, 2, 2] = 0.0
+    points = control_points(state, np.array([duration]), np.array([braking.aside]))
+    return StopPlan(time, duration, points, math.inf if landing is None else time - begun)

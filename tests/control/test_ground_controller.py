@@ -64,15 +64,3 @@ def test_tilt_of_an_upright_link_compensates_wrong_attitude_and_drag():
 def test_tilt_set_points_are_bounded_and_zero_for_an_upright_link():
     assert np.linalg.norm(set_point(links(off=0.8))) == pytest.approx(GroundControlSettings().tilt_max)
     assert set_point(links()) == pytest.approx([0.0, 0.0])
-
-
-def test_uav_without_a_position_does_what_the_others_do_whatever_its_own_link_is_taken_for():
-    x = np.zeros((6, 4, 2))
-    x[S, :, 0], x[S, 3, 0] = -0.1, 0.4
-    states = LinkStates(
-        x, 0.6 * MODEL.parameters.hover_thrust, np.zeros(2), located=np.array([True, True, True, False])
-    )
-    reference = SimpleNamespace(x=np.zeros((1, MODEL.layout.size)), u=np.zeros((1, MODEL.layout.inputs)))
-    u = GroundController(MODEL, PERIOD).setpoints(states, reference)
-    tilts = u[MODEL.layout.n_setpoint].reshape(-1, 2)
-    assert tilts[3] == pytest.approx(tilts[0]) and tilts[0, 0] != 0.0

@@ -142,3 +142,25 @@ def test_below_its_own_weight_nothing_is_learnt_of_a_uav_that_a_cradle_may_hold(
     x = links.at(1.0).x
     assert x[[S, S_DOT, OFF]] == pytest.approx(np.zeros((3, 4, 2)))
     assert np.isfinite(x[[N, N_DOT, N_ACC]]).all()
+
+
+def started(payload=REST, unlocated=()):
+    links, x = GroundedLinks(P), np.zeros((6, 4, 2))
+    x[S, :, 0], x[S, 3, 0] = 0.1, 0.4
+    links.start(0.0, payload, x, 0.6 * P.hover_thrust, np.zeros(2), unlocated)
+    return links
+
+
+def test_link_swings_about_a_foot_that_the_ground_stops():
+    moving = np.concatenate([np.zeros(3), [0.3, 0.0, 0.0], np.zeros(6)])
+    links = started(moving, {3})
+    links.add(Position(0.0, PAYLOAD, np.zeros(3), np.zeros(3)))
+    assert links.at(0.0).x[S_DOT, :, 0] == pytest.approx(-0.3 / P.l)
+
+
+def test_uav_whose_positions_have_stopped_in_the_air_has_none():
+    links = GroundedLinks(P)
+    for uav in range(4):
+        for time in (0.0, 1.0)[: 1 if uav == 2 else 2]:
+            links.locate(Position(time, uav, np.zeros(3), np.zeros(3)))
+    assert links.unlocated(1.0) == {2}

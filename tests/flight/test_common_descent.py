@@ -151,7 +151,7 @@ class Team:
 
 @pytest.fixture(autouse=True)
 def hovering(monkeypatch):
-    def stop_plan(parameters, flat, time, x, choose):
+    def stop_plan(parameters, flat, time, x, choose, landing):
         return TeamPlan(time, 4.0, np.zeros((N, 5, 3)))
 
     monkeypatch.setattr(control_loop, "stop_plan", stop_plan)

@@ -15,7 +15,7 @@ from gcs.flight.control_loop import ControlLoop, Hold, Setpoints, StepRecord
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.setpoints import attitude_target
-from idc_controller.estimation.grounded_links import LinkStates
+from idc_controller.estimation.grounded_links import LinkStates, S
 from idc_controller.estimation.measurements import Position, SensorGroup
 from idc_controller.rotations import rotation_from_quaternion
 from idc_controller.safety.filter_protocol import NoObstacles
@@ -135,6 +135,31 @@ def test_stop_plan_goes_on_only_with_what_all_vehicles_have_received(monkeypatch
     assert send(times[9], times[9])[0] == times[9]
 
 
+@pytest.fixture
+def unconfirmed(monkeypatch):
+    """A control loop that keeps all stop plans: no vehicle confirms any set-point."""
+    loop = control_loop()
+    monkeypatch.setattr(loop.estimator.setpoints, "received_by_all", lambda effective, age_max: 0.0)
+    return loop
+
+
+def test_vehicles_without_setpoints_land_when_the_payload_would_and_go_on_with_its_landing(unconfirmed):
+    loop = unconfirmed
+    record = loop.decide(estimated(v_0=np.array([0.0, 0.0, 0.3])), REST, learn_load=False)
+    for until_landing in (0.1, 0.05, 0.0):
+        loop.send(record, 5.1 - until_landing, np.full(N, 4.95), Hold(5.0, 0.9), until_landing)
+    assert [plan.descent for plan in loop.stop_plans] == pytest.approx([5.1, 5.1, 4.5])
+
+
+def test_landing_that_is_decided_late_brings_the_descent_forward_step_by_step(unconfirmed):
+    loop = unconfirmed
+    record = loop.decide(estimated(v_0=np.array([0.0, 0.0, 0.3])), REST, learn_load=False)
+    for k in range(100):
+        loop.send(record, 5.0 + PERIOD * k, np.full(N, 4.95), Hold(5.0, 0.9), 0.0 if k else np.inf)
+    changes = np.diff([plan.descent for plan in loop.stop_plans])
+    assert changes[:49] == pytest.approx(-PERIOD) and changes[50:] == pytest.approx(PERIOD)
+
+
 UPRIGHT = LinkStates(np.zeros((6, N, 2)), SYSTEM.parameters().hover_thrust, np.zeros(2))
 
 
@@ -177,3 +202,18 @@ def test_idle_setpoints_are_upright_rotors_without_thrust():
     idle = Setpoints.idle(3)
     assert idle.directions.tolist() == [[0.0, 0.0, -1.0]] * 3
     assert idle.thrusts.tolist() == [0.0] * 3
+
+
+def test_stop_plan_over_a_payload_that_stands_descends_at_once_with_the_thrust_that_is_flown():
+    loop = control_loop()
+    record = loop.decide(estimated(), REST, learn_load=False)
+    loop.send(record, 5.0, np.full(N, 4.95))
+    x = np.zeros((6, N, 2))
+    x[S, :, 0] = 0.1
+    thrusts = 0.6 * P.hover_thrust
+    setpoints = Setpoints(np.tile([0.0, 0.0, -1.0], (N, 1)), thrusts)
+    loop.stand(record, 5.1, UPRIGHT._replace(x=x), setpoints)
+    plan = loop.stop_plan
+    assert plan.start == plan.descent == 5.1
+    assert -plan.hover_forces[:, 2] == pytest.approx(thrusts)
+    assert plan.control_points[:, :, 0] == pytest.approx((SPOTS[1:, 0] - 0.1 * P.l)[:, None] * np.ones(5), abs=1e-3)

@@ -86,11 +86,13 @@ class TrackedFlight(Flight):
             hold_payload=none, setpoints=setpoints, health=health, measurement_model=model, start=none
         )
         load = LoadAdaptation(MODEL, ControllerSettings())
-        controller = SimpleNamespace(parameters=PARAMETERS, guidance=Guidance(), layout=LAYOUT, load=load)
+        controller = SimpleNamespace(
+            parameters=PARAMETERS, guidance=Guidance(), layout=LAYOUT, load=load, settings=ControllerSettings()
+        )
         links = SimpleNamespace(at=lambda time: UPRIGHT, command=none)
         control = SimpleNamespace(
             estimator=estimator, controller=controller, estimate=self.on_trajectory, decide=self.decided, send=none,
-            links=links, start_links=none, resting_place=None,
+            links=links, start_links=none, resting_place=None, stand=none,
         )  # fmt: skip
         super().__init__(MISSION, self.team, control, AlarmLog(), stack.obstacle_map(MISSION))
         self.failsafes.evaluate = none

@@ -5,28 +5,35 @@ import pytest
 
 from gcs.config import SystemConfig
 from gcs.config.flight_settings import DEFAULTS
-from gcs.flight.spool import Touchdown
+from gcs.flight.spool import Footing, Touchdown
 from idc_controller.estimation.grounded_links import S_DOT, LinkStates, S
 from idc_controller.trajectory.trajectory import RestTrajectory
 
 SETTINGS = DEFAULTS.takeoff_landing
 PARAMETERS = SystemConfig().parameters()
 OWN, HOVER = np.full(4, 7.0), np.full(4, 15.0)
-STANDING = OWN + SETTINGS.carried_share * (HOVER - OWN)
+FOOTING = Footing(OWN, OWN + 0.5, 0.24, 0.5, 0.16)
+STANDING = OWN + FOOTING.carried * (HOVER - OWN)
 
 
 def touchdown():
-    return Touchdown(RestTrajectory(np.zeros(3), 10.0), 0.0, 10.0, OWN, SETTINGS)
+    return Touchdown(RestTrajectory(np.zeros(3), 10.0), 0.0, 10.0, FOOTING, SETTINGS)
 
 
-def thrusts(spool, elapsed, lean=0.0, hover=HOVER, speed=0.0, located=True, rate=0.0):
+def thrusts(spool, elapsed, lean=0.0, hover=HOVER, speed=0.0, located=True, flown=None, rate=0.0):
     """Thrusts at ``elapsed`` (s) after touch-down with one link that leans, over a payload that slides.
 
     ``rate`` (1/s): with which the link of the last UAV moves, which is ``located`` or not.
     """
     x = np.zeros((6, 4, 2))
     x[S, 2, 1], x[S_DOT, 3, 0] = lean, rate
-    links = LinkStates(x, hover, np.zeros(2), np.array([speed, 0.0, 0.0]), np.array([True, True, True, located]))
+    links = LinkStates(
+        x,
+        hover if flown is None else flown,
+        np.zeros(2),
+        np.array([speed, 0.0, 0.0]),
+        np.array([True, True, True, located]),
+    )
     return spool.thrusts(10.0 + elapsed, hover, links)
 
 
@@ -58,19 +65,40 @@ def test_spool_down_waits_for_links_until_its_timeout():
     assert not thrusts(spool, SETTINGS.upright_timeout + SETTINGS.spool_down_time + 0.05, 1.0).any()
 
 
-def test_payload_that_slides_is_carried_less_and_the_thrust_does_not_fade_before_it_rests():
+def test_payload_that_slides_is_carried_less_the_farther_it_has_slid_and_the_thrust_does_not_fade_before_it_rests():
     spool = touchdown()
     kept = np.array([thrusts(spool, 0.05 * k, speed=0.3)[0] for k in range(60)])
-    assert np.all(np.diff(kept) <= 0.0) and OWN[0] < kept[-1] < OWN[0] + 0.5 * (STANDING[0] - OWN[0])
+    assert np.all(np.diff(kept) <= 0.0) and kept[-1] == pytest.approx(FOOTING.taut[0])
     assert thrusts(spool, 3.0 + 0.05)[0] == pytest.approx(kept[-1])
     assert thrusts(spool, 3.5)[0] < kept[-1]
+
+
+def test_footing_holds_in_the_strongest_wind_and_beside_a_uav_without_a_position():
+    failsafe = DEFAULTS.failsafe
+    footing = Footing.of(PARAMETERS, failsafe, SETTINGS, tilt_max=0.3)
+    assert (1.0 - footing.carried) * SETTINGS.friction == pytest.approx(failsafe.wind_drag)
+    lifted = (footing.carried + footing.carried_unlocated) / PARAMETERS.number_of_uavs
+    assert lifted == pytest.approx(0.5 * SETTINGS.least_weight)
+    # Tilted, and with mass and thrust off by what is tolerated, a UAV still lifts more than its weight.
+    weight, share = PARAMETERS.m * PARAMETERS.g, failsafe.parameter_tolerance
+    assert np.all(footing.taut * (1.0 - share) * np.sqrt(1.0 - 0.3**2) > weight)
+
+
+@pytest.mark.parametrize(("begun", "goes_on"), [(0.1, False), (0.5, True)])
+def test_thrust_fades_no_further_over_a_payload_that_is_lifted_while_the_links_are_taut(begun, goes_on):
+    spool = touchdown()
+    thrusts(spool, SETTINGS.unload_time)
+    faded = thrusts(spool, SETTINGS.unload_time + begun)
+    assert (faded[0] < OWN[0]) == goes_on
+    lifted = [thrusts(spool, 1.0 + begun + 0.05 * k, speed=0.3, flown=faded)[0] for k in range(10)]
+    assert (lifted[-1] < OWN[0]) == goes_on
 
 
 def test_uav_without_a_position_keeps_more_of_its_share_and_stops_with_the_others():
     spool = touchdown()
     waiting = thrusts(spool, 1.0, lean=1.0, located=False)
     assert waiting[:3] == pytest.approx(STANDING[:3])
-    assert waiting[3] == pytest.approx(OWN[3] + SETTINGS.carried_share_unlocated * (HOVER[3] - OWN[3]))
+    assert waiting[3] == pytest.approx(OWN[3] + FOOTING.carried_unlocated * (HOVER[3] - OWN[3]))
     fading = np.array([thrusts(spool, 1.05 + 0.05 * k, located=False) for k in range(50)])
     assert fading[:, 3] / waiting[3] == pytest.approx(fading[:, 0] / waiting[0]) and not fading[-1].any()
 

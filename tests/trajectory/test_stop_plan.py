@@ -10,7 +10,9 @@ from idc_controller.model.linear import StateLayout
 from idc_controller.trajectory.flatness import Load, flat_reference
 from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
 from idc_controller.trajectory.settings import Limits
-from idc_controller.trajectory.stop_plan import Braking, stop_plan
+from idc_controller.trajectory.stop_plan import Braking, Descent, stop_plan
+from idc_controller.trajectory.trajectory import RestTrajectory
+from vehicle_sim.autopilot.hold_control import HoldPlan
 
 PARAMETERS = read_system().parameters()
 LIMITS = Limits(20.0, 6.0, 20.0, 80.0)
@@ -85,3 +87,21 @@ def test_stop_plan_starts_at_current_positions_and_translates_all_uavs_alike():
     # What is not known is not reckoned with.
     x[layout.r_0] = np.nan
     assert stop_plan(PARAMETERS, flat, 13.7, x).control_points == pytest.approx(usual.control_points)
+
+
+@pytest.mark.parametrize(("sinking", "starts_with"), [(0.0, 0.0), (0.3, 0.3), (0.8, 0.8), (-0.4, -0.4)])
+def test_landing_goes_on_from_its_speed_to_that_of_the_descent(sinking, starts_with):
+    flat = flat_reference(PARAMETERS, RestTrajectory(np.array([1.0, 2.0, -0.5]), 0.0), np.array([5.0]), LOAD)
+    x = flat.x[0].copy()
+    x[5] = sinking
+    descent = Descent(0.5, 1.0)
+    plan = stop_plan(PARAMETERS, flat, 5.0, x, landing=descent)
+    points = tuple(tuple(point) for point in plan.control_points[0].tolist())
+    flown = HoldPlan(plan.start, plan.duration, points, 0.0, plan.descent, descent.speed, descent.ramp)
+    place = flat.payload[0, 0] + PARAMETERS.p[0] - [0.0, 0.0, PARAMETERS.l[0]]
+    assert flown.at(5.0).position == pytest.approx(place)
+    assert flown.at(5.0).velocity == pytest.approx([0.0, 0.0, starts_with])
+    speeds = [flown.at(5.0 + 0.1 * k).velocity[2] for k in range(100)]
+    assert speeds[-1] == pytest.approx(descent.speed)
+    between = min(sinking, descent.speed), max(sinking, descent.speed)
+    assert between[0] - 1e-9 <= min(speeds) and max(speeds) <= between[1] + 1e-9

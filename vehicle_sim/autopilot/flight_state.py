@@ -148,7 +148,7 @@ class FlightState:
         settings = self.settings.hold
         sent = self._recent_stop_plan(now)
         if sent is not None:
-            descent_start = max(sent.descent, now)
+            descent_start = sent.descent
         descent = descent_start, self.parameters[px4.PARAM_LAND_SPEED], settings.descent_ramp, sent is not None
         plan = self._plan_of_ground(sent, measured, now, descent) or HoldPlan.to_rest(
             now, measured.position, measured.velocity, euler_of(measured.attitude)[2], settings.braking, *descent
