@@ -14,6 +14,8 @@ from idc_controller.compiled import inlined, kernel
 
 _MASS_SHARE_MIN = 0.05
 """Least mass of the payload that is taken, over the model's: an estimate may have none for a moment."""
+_LEAN_MAX = 0.85
+"""Largest sine of a link's tilt that is taken: an estimate without a position may have one that is none."""
 
 
 @inlined
@@ -92,11 +94,13 @@ def _accelerations(x: Array, bodies: Bodies) -> Array:
     known, q, rows = np.empty(N), np.empty((N, 3)), np.empty((N, 6))
     forces, turning = np.empty((N, 3)), np.empty((N, 3))
     for i in range(N):
-        s_x, s_y = x[12 + 2 * i], x[13 + 2 * i]
-        d_x, d_y = x[12 + 2 * (N + i)], x[13 + 2 * (N + i)]
+        lean = math.sqrt(x[12 + 2 * i] * x[12 + 2 * i] + x[13 + 2 * i] * x[13 + 2 * i])
+        share = _LEAN_MAX / max(lean, _LEAN_MAX)
+        s_x, s_y = share * x[12 + 2 * i], share * x[13 + 2 * i]
+        d_x, d_y = share * x[12 + 2 * (N + i)], share * x[13 + 2 * (N + i)]
         n_x, n_y, f = x[12 + 2 * (2 * N + i)], x[13 + 2 * (2 * N + i)], x[12 + 10 * N + i]
         w = 12 + 11 * N + 3 + 2 * i
-        s_z = math.sqrt(max(1.0 - (s_x * s_x + s_y * s_y), 0.01))
+        s_z = math.sqrt(1.0 - (s_x * s_x + s_y * s_y))
         d_z = -(s_x * d_x + s_y * d_y) / s_z
         q[i, 0], q[i, 1], q[i, 2] = s_x, s_y, s_z
         forces[i, 0], forces[i, 1] = f * n_x + x[w], f * n_y + x[w + 1]

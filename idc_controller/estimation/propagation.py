@@ -63,7 +63,12 @@ class PropagationInterval:
         return np.zeros(self.u.shape[1]) if u is None else u - self.u[k]
 
     def nonlinear_part(self, k: int, error: Array) -> Array:
-        """Return what the linear model leaves out (n,) of how an ``error`` (n,) changes from time ``k`` to the next."""
+        """Return what the linear model leaves out (n,) of how an ``error`` (n,) changes from time ``k`` to the next.
+
+        Of vehicles that are held it leaves out nothing: the ground holds the payload, of which no equation knows.
+        """
+        if self.setpoints[k].u is None:
+            return np.zeros(len(error))
         return self._process.nonlinear_part(error, self.nominal[k], self.force_of_mass[k], self.durations[k])
 
     def defect(self, k: int) -> Array:

@@ -72,3 +72,13 @@ def test_linear_model_leaves_out_nothing_near_hover():
     error = 1e-4 * np.random.default_rng(1).normal(size=PROCESS.size)
     part = PROCESS.nonlinear_part(error, hover, PROCESS.force_of_mass(np.zeros(3)), round(DURATION * 1e6))
     assert np.abs(part).max() < 1e-6 * DURATION
+
+
+@pytest.mark.parametrize("lean", [1.0, 3.0])
+def test_link_that_is_estimated_to_lean_beyond_the_level_is_taken_to_lean_less(lean):
+    hover = np.zeros(PROCESS.size)
+    hover[LAYOUT.f] = P.hover_thrust
+    error = np.zeros(PROCESS.size)
+    error[LAYOUT.s.start] = lean
+    part = PROCESS.nonlinear_part(error, hover, PROCESS.force_of_mass(np.zeros(3)), round(DURATION * 1e6)) / DURATION
+    assert np.abs(part).max() < 10.0 * P.g
