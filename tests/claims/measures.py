@@ -49,8 +49,10 @@ def geometry() -> dict[str, Any]:
 
 
 def links() -> dict[str, Any]:
-    """Return the delay (ms) that is not compensated at which the loop at hover becomes unstable."""
-    return {"delay_margin_ms": 1e3 * hover_loop().delay_margin()}
+    """Return the delays (ms), not compensated, at which the loop at hover becomes unstable."""
+    loop = hover_loop()
+    light = loop.delay_margin(SystemConfig().payload.mass / 3.0)
+    return {"delay_margin_ms": 1e3 * loop.delay_margin(), "delay_margin_light_ms": 1e3 * light}
 
 
 def sight() -> dict[str, Any]:

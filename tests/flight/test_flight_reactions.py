@@ -35,7 +35,7 @@ class Watched(Flight):
             estimator=None,
             links=None,
             resting_place=None,
-            controller=SimpleNamespace(parameters=PARAMETERS, guidance=Guidance()),
+            controller=SimpleNamespace(parameters=PARAMETERS, guidance=Guidance(), load=None),
         )
         super().__init__(MISSION, team, control, AlarmLog(), stack.obstacle_map(MISSION))
         self.phase = phase
