@@ -67,11 +67,13 @@ def _accelerations(x: Array, bodies: Bodies) -> Array:
 
         T = m (q . a_att + l |q'|^2) - q . (F + m g e3),  l s'' = (a_att - (F + T q) / m) in the level,
 
-    where a_att is the acceleration of the attachment point and F the thrust with the wind's force.
+    where a_att is the acceleration of the attachment point and F the thrust with the wind's force. A vertical force on
+    the payload is taken for weight, from which it cannot be told at rest: of the two only the sum is known well.
     """
     m_0, inertia, p, l, m, g = bodies
     N = len(l)
-    mass = max(m_0 + x[-1], _MASS_SHARE_MIN * m_0)
+    force = 12 + 11 * N
+    mass = max(m_0 + x[-1] + x[force + 2] / g, _MASS_SHARE_MIN * m_0)
     J_0 = inertia * (mass / m_0)
     cr, sr, cp, sp = math.cos(x[6]), math.sin(x[6]), math.cos(x[7]), math.sin(x[7])
     cy, sy = math.cos(x[8]), math.sin(x[8])
@@ -83,10 +85,9 @@ def _accelerations(x: Array, bodies: Bodies) -> Array:
     A, b = np.zeros((6, 6)), np.zeros(6)
     for c in range(3):
         A[c, c] = mass
-        b[c] = x[12 + 11 * N + c]
         for r in range(3):
             A[3 + r, 3 + c] = J_0[r, c]
-    b[2] += mass * g
+    b[0], b[1], b[2] = x[force], x[force + 1], mass * g
     momentum = np.dot(J_0, omega)
     gyroscopic = _cross(omega, momentum)
     for c in range(3):
@@ -99,7 +100,7 @@ def _accelerations(x: Array, bodies: Bodies) -> Array:
         s_x, s_y = share * x[12 + 2 * i], share * x[13 + 2 * i]
         d_x, d_y = share * x[12 + 2 * (N + i)], share * x[13 + 2 * (N + i)]
         n_x, n_y, f = x[12 + 2 * (2 * N + i)], x[13 + 2 * (2 * N + i)], x[12 + 10 * N + i]
-        w = 12 + 11 * N + 3 + 2 * i
+        w = force + 3 + 2 * i
         s_z = math.sqrt(1.0 - (s_x * s_x + s_y * s_y))
         d_z = -(s_x * d_x + s_y * d_y) / s_z
         q[i, 0], q[i, 1], q[i, 2] = s_x, s_y, s_z

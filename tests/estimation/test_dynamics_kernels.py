@@ -32,7 +32,7 @@ def upright(lateral):
 def changes_by_the_paper(x):
     """Return v_0' (3,), omega' (3,) and s'' (2 N,) of a state (n,) by :mod:`idc_controller.model.nonlinear`."""
     s, s_dot, n = (x[part].reshape(-1, 2) for part in (LAYOUT.s, LAYOUT.s_dot, LAYOUT.n))
-    mass = P.m_0 + x[PROCESS.mass]
+    mass = P.m_0 + x[PROCESS.mass] + x[PROCESS.force][2] / P.g
     q, thrust = upright(s), x[LAYOUT.f, None] * upright(n) * [1.0, 1.0, -1.0]
     q_dot = np.column_stack([s_dot, -np.sum(s * s_dot, axis=1) / q[:, 2]])
     force = thrust + np.column_stack([x[PROCESS.uav_force].reshape(-1, 2), np.zeros(len(q))])
@@ -46,7 +46,7 @@ def changes_by_the_paper(x):
     state = SystemState(
         state.r_0, state.r_0_dot, attitude, state.omega_0, q @ R, swing @ R, state.quaternion, state.omega
     )
-    found = accelerations(P.with_payload_mass(mass), state, Inputs(force, still, x[PROCESS.force]))
+    found = accelerations(P.with_payload_mass(mass), state, Inputs(force, still, x[PROCESS.force] * [1.0, 1.0, 0.0]))
     turned = (found.Omega_dot + np.cross(state.omega_0, state.Omega)) @ R.T
     s_acc = np.cross(turned, q) + np.cross(swing, np.cross(swing, q))
     return np.concatenate([found.r_0_ddot, found.omega_0_dot, s_acc[:, :2].ravel()])
