@@ -1,5 +1,6 @@
 """The payload under control, from spool-up to the end of spool-down: what it follows, and its control step."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -127,14 +128,17 @@ class PayloadControl:
             tilts = decision.u[loop.controller.layout.n_setpoint].reshape(-1, 2)
             loop.links.command(effective, tilts, thrusts)
         setpoints = Setpoints(decision.directions, thrusts)
-        if links is not None and self._touchdown is not None:
+        # Those that would land by dead reckoning hold first: it is their thrust that keeps links upright.
+        may_land = len(loop.links.unlocated(time)) < 2
+        if links is not None and self._touchdown is not None and may_land:
             loop.stand(record, effective, links, setpoints)
         if self._spool_up is not None:
             self._spool_up.sent(effective, setpoints, leaves, in_air=in_air)
             if in_air and system.payload.is_clear(estimate):
                 self._spool_up = None
         if in_air:
-            loop.send(record, effective, leaves, system.team.hold, self._flown.until_landing(time))
+            until_landing = self._flown.until_landing(time) if may_land else math.inf
+            loop.send(record, effective, leaves, system.team.hold, until_landing)
             places = loop.estimator.measurement_model.vehicles(time, decision.flat.x[0])
             contradicted = loop.estimator.health.uav_positions_isolated
             planned_down = float(decision.flat.payload[0, 0, 2])
