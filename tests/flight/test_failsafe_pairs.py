@@ -89,7 +89,7 @@ class TrackedFlight(Flight):
         controller = SimpleNamespace(
             parameters=PARAMETERS, guidance=Guidance(), layout=LAYOUT, load=load, settings=ControllerSettings()
         )
-        links = SimpleNamespace(at=lambda time: UPRIGHT, command=none)
+        links = SimpleNamespace(at=lambda time: UPRIGHT, command=none, unlocated=lambda time: ())
         control = SimpleNamespace(
             estimator=estimator, controller=controller, estimate=self.on_trajectory, decide=self.decided, send=none,
             links=links, start_links=none, resting_place=None, stand=none,
