@@ -17,8 +17,8 @@ CONTROL_RATE = 20
 class MpcWeights(SettingsTable):
     """Diagonal of the MPC's cost, a unit of squared error each; lists are x, y, z or roll, pitch, yaw."""
 
-    position: Triple = setting((60.0, 60.0, 80.0), "1/m2", "weight of the payload's position", ge=0.0)
-    velocity: Triple = setting((20.0, 20.0, 20.0), "s2/m2", "weight of the payload's velocity", ge=0.0)
+    position: Triple = setting((60.0, 60.0, 480.0), "1/m2", "weight of the payload's position", ge=0.0)
+    velocity: Triple = setting((20.0, 20.0, 120.0), "s2/m2", "weight of the payload's velocity", ge=0.0)
     attitude: Triple = setting((300.0, 300.0, 800.0), "1/rad2", "weight of the payload's attitude", ge=0.0)
     rates: Triple = setting((40.0, 40.0, 120.0), "s2/rad2", "weight of the payload's body rates", ge=0.0)
     link_tilt: float = setting(100.0, "1/rad2", "weight of each link's tilt", ge=0.0)
@@ -31,7 +31,8 @@ class MpcWeights(SettingsTable):
     uav_tilt_rate: float = setting(0.02, "s2/rad2", "weight of a UAV's tilt rate", ge=0.0)
     thrust: float = setting(0.002, "1/N2", "weight of a UAV's thrust", ge=0.0)
     # The least weights of set-points with which the loop at hover bears a delay of a control period that it does not
-    # know of (a set-point that is lost), also with a third of the payload (control/delay_margin.py).
+    # know of (a set-point that is lost), also with a third of the payload (control/delay_margin.py). The vertical weights
+    # of position and velocity grow with that of thrust: on them alone the margin does not depend.
     tilt_setpoint: float = setting(60.0, "1/rad2", "weight of a tilt set-point", gt=0.0)
     thrust_setpoint: float = setting(0.12, "1/N2", "weight of a thrust set-point", gt=0.0)
 

@@ -12,8 +12,10 @@ import numpy as np
 from idc_controller.arrays import Array, Array1, Const1, Const2
 from idc_controller.compiled import inlined, kernel
 
-_MASS_SHARE_MIN = 0.05
-"""Least mass of the payload that is taken, over the model's: an estimate may have none for a moment."""
+_INERTIA_SHARE_MIN = 1.0 / 3.0
+"""Least mass of the payload that its inertia is taken for, over the model's: covariances are those of the model, and by
+them the noise of a force would turn a lighter payload about. The model follows a mass that lasts.
+"""
 _LEAN_MAX = 0.85
 """Largest sine of a link's tilt that is taken: an estimate without a position may have one that is none."""
 
@@ -73,7 +75,8 @@ def _accelerations(x: Array, bodies: Bodies) -> Array:
     m_0, inertia, p, l, m, g = bodies
     N = len(l)
     force = 12 + 11 * N
-    mass = max(m_0 + x[-1] + x[force + 2] / g, _MASS_SHARE_MIN * m_0)
+    weight = (m_0 + x[-1]) * g + x[force + 2]
+    mass = max(weight / g, _INERTIA_SHARE_MIN * m_0)
     J_0 = inertia * (mass / m_0)
     cr, sr, cp, sp = math.cos(x[6]), math.sin(x[6]), math.cos(x[7]), math.sin(x[7])
     cy, sy = math.cos(x[8]), math.sin(x[8])
@@ -87,7 +90,7 @@ def _accelerations(x: Array, bodies: Bodies) -> Array:
         A[c, c] = mass
         for r in range(3):
             A[3 + r, 3 + c] = J_0[r, c]
-    b[0], b[1], b[2] = x[force], x[force + 1], mass * g
+    b[0], b[1], b[2] = x[force], x[force + 1], weight
     momentum = np.dot(J_0, omega)
     gyroscopic = _cross(omega, momentum)
     for c in range(3):
