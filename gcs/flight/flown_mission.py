@@ -65,10 +65,14 @@ class FlownMission:
         assert self.trajectory is not None
         return Phase(self.trajectory.phase(self.progress(time)))
 
-    def until_landing(self, time: float) -> float:
-        """Return the time (s) to the final descent of a flight in the air; zero in it, inf while it is not known."""
+    def until_landing(self, time: float, within: float) -> float:
+        """Return the time (s) to the final descent of a flight in the air; zero in it, inf where that is farther.
+
+        ``within`` (s): as far as each control step reads the trajectory. Who shows the mission may have read on.
+        """
         assert self.trajectory is not None
-        return max(self.trajectory.landing_from - self.progress(time), 0.0)
+        until = self.trajectory.landing_from - self.progress(time)
+        return max(until, 0.0) if until <= within else math.inf
 
     def descent(self, time: float) -> tuple[float, Trajectory]:
         """Return the progress (s) along the trajectory of a flight that lands, and that trajectory."""

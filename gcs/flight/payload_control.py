@@ -137,7 +137,8 @@ class PayloadControl:
             if in_air and system.payload.is_clear(estimate):
                 self._spool_up = None
         if in_air:
-            until_landing = self._flown.until_landing(time) if may_land else math.inf
+            horizon = loop.controller.tracker.horizon * loop.controller.settings.period
+            until_landing = self._flown.until_landing(time, horizon) if may_land else math.inf
             loop.send(record, effective, leaves, system.team.hold, until_landing)
             places = loop.estimator.measurement_model.vehicles(time, decision.flat.x[0])
             contradicted = loop.estimator.health.uav_positions_isolated

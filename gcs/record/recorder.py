@@ -84,8 +84,9 @@ class FlightRecorder(ExitStack):
         )  # fmt: skip
         control = flight.control
         self._innovations.record(control.estimator, estimate, time)
-        if flight.phase in IN_AIR:
-            self._write_plan(estimate.time, decision)
+        if flight.phase not in IN_AIR:
+            return
+        self._write_plan(estimate.time, decision)
         if control.stop_plans and control.stop_plans[-1].start == estimate.time:
             chain, parameters = flight.mission.system.safety.planner.chain, control.controller.parameters
             trajectory = decision.reference.trajectory

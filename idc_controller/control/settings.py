@@ -17,8 +17,8 @@ CONTROL_RATE = 20
 class MpcWeights(SettingsTable):
     """Diagonal of the MPC's cost, a unit of squared error each; lists are x, y, z or roll, pitch, yaw."""
 
-    position: Triple = setting((60.0, 60.0, 480.0), "1/m2", "weight of the payload's position", ge=0.0)
-    velocity: Triple = setting((20.0, 20.0, 120.0), "s2/m2", "weight of the payload's velocity", ge=0.0)
+    position: Triple = setting((60.0, 60.0, 200.0), "1/m2", "weight of the payload's position", ge=0.0)
+    velocity: Triple = setting((20.0, 20.0, 50.0), "s2/m2", "weight of the payload's velocity", ge=0.0)
     attitude: Triple = setting((300.0, 300.0, 800.0), "1/rad2", "weight of the payload's attitude", ge=0.0)
     rates: Triple = setting((40.0, 40.0, 120.0), "s2/rad2", "weight of the payload's body rates", ge=0.0)
     link_tilt: float = setting(100.0, "1/rad2", "weight of each link's tilt", ge=0.0)

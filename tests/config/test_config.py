@@ -172,7 +172,7 @@ def test_noise_of_zero_is_accepted(tmp_path: Path) -> None:
         ("elevation_min_deg = -70.0 ", "elevation_min_deg = 31.0 ", "elevation_min_deg", "31.0 deg is not below"),
         ("physics = 500", "physics = 250", "physics = 500", "rates.physics: "),
         ("speed = 1.5 ", "speed = 4.0 ", "speed = 1.5", "motion.speed: 4.0 is more than speed_max"),
-        ("position = [60.0, 60.0, 80.0]", "position = [60.0, -1.0, 80.0]", "position = [60", "position[2]: "),
+        ("position = [60.0, 60.0, 200.0]", "position = [60.0, -1.0, 80.0]", "position = [60", "position[2]: "),
         ("[controller.weights]", "[controller.weight]", "[controller.weights]", "controller.weight: unknown key"),
     ],
 )

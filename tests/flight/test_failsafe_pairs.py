@@ -87,7 +87,12 @@ class TrackedFlight(Flight):
         )
         load = LoadAdaptation(MODEL, ControllerSettings())
         controller = SimpleNamespace(
-            parameters=PARAMETERS, guidance=Guidance(), layout=LAYOUT, load=load, settings=ControllerSettings()
+            tracker=SimpleNamespace(horizon=20),
+            parameters=PARAMETERS,
+            guidance=Guidance(),
+            layout=LAYOUT,
+            load=load,
+            settings=ControllerSettings(),
         )
         links = SimpleNamespace(at=lambda time: UPRIGHT, command=none, unlocated=lambda time: ())
         control = SimpleNamespace(
