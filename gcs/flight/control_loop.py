@@ -103,7 +103,7 @@ class ControlLoop:
             drag = np.median(self.controller.load.on_uavs, axis=0)[:2]
             x[[S, S_DOT, N, N_DOT, N_ACC]] = [estimate.x[part].reshape(-1, 2) for part in parts]
             x[OFF] = (forces - np.median(forces, axis=0)) / thrusts[:, None]
-            unlocated = self.estimator.health.unusable_poses(Position, time) | self.links.unlocated(time)
+            unlocated = self.estimator.health.unusable_poses(Position, time) | self.links.unlocated
         self.links.start(time, payload, x, thrusts, drag, unlocated - {PAYLOAD})
 
     def add_to_links(self, measurement: Measurement) -> None:

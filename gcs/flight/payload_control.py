@@ -129,7 +129,7 @@ class PayloadControl:
             loop.links.command(effective, tilts, thrusts)
         setpoints = Setpoints(decision.directions, thrusts)
         # Those that would land by dead reckoning hold first: it is their thrust that keeps links upright.
-        may_land = len(loop.links.unlocated(time)) < 2
+        may_land = len(loop.links.unlocated) < 2
         if links is not None and self._touchdown is not None and may_land:
             loop.stand(record, effective, links, setpoints)
         if self._spool_up is not None:

@@ -95,7 +95,9 @@ class Footing(NamedTuple):
         carried = max(1.0 - failsafe.wind_drag / settings.friction, 0.0)
         # Two UAVs at one edge tip what remains of the payload if they lift half of it.
         unlocated = 0.5 * len(own) * settings.least_weight - carried
-        return cls(own, taut, carried, unlocated, settings.upright_lean * float(parameters.l.min()))
+        return cls(
+            own, taut, carried, min(max(unlocated, carried), 1.0), settings.upright_lean * float(parameters.l.min())
+        )
 
 
 class Touchdown:

@@ -118,6 +118,8 @@ class GroundedLinks:
         self._drag = np.zeros(2)
         self._located = np.zeros(number)
         """Time of the last position of each UAV (s)."""
+        self._newest = -math.inf
+        """Time of the newest measurement (s)."""
         self._common, self._own = np.zeros(2), np.zeros((number, 2))
         """What all have of b (2,), and what each UAV has beside it (N, 2), low-passed."""
         self._offsets = np.zeros((number, 2))
@@ -179,6 +181,7 @@ class GroundedLinks:
     def add(self, measurement: Measurement) -> None:
         """Take a ``measurement`` of the payload's unit, or of a UAV unless a later one was taken before."""
         i, p = measurement.source, self._parameters
+        self._newest = max(self._newest, measurement.time)
         if i == PAYLOAD:
             before = self._payload.velocities(p.p)
             self._payload.add(measurement)
@@ -209,12 +212,14 @@ class GroundedLinks:
 
     def locate(self, measurement: Measurement) -> None:
         """Take a ``measurement`` in the air: which UAVs have a position."""
+        self._newest = max(self._newest, measurement.time)
         if isinstance(measurement, Position) and measurement.source != PAYLOAD and measurement.has_pose:
             self._located[measurement.source] = measurement.time
 
-    def unlocated(self, time: float) -> frozenset[int]:
-        """Return the UAVs without a position at ``time`` (s)."""
-        return frozenset(np.flatnonzero(time - self._located > self._settings.position_gap).tolist())
+    @property
+    def unlocated(self) -> frozenset[int]:
+        """UAVs that have sent no position for a while, by the newest measurement: links may be slow."""
+        return frozenset(np.flatnonzero(self._newest - self._located > self._settings.position_gap).tolist())
 
     @property
     def _is_located(self) -> Mask:

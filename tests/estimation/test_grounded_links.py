@@ -163,4 +163,4 @@ def test_uav_whose_positions_have_stopped_in_the_air_has_none():
     for uav in range(4):
         for time in (0.0, 1.0)[: 1 if uav == 2 else 2]:
             links.locate(Position(time, uav, np.zeros(3), np.zeros(3)))
-    assert links.unlocated(1.0) == {2}
+    assert links.unlocated == {2}

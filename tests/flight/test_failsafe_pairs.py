@@ -94,7 +94,7 @@ class TrackedFlight(Flight):
             load=load,
             settings=ControllerSettings(),
         )
-        links = SimpleNamespace(at=lambda time: UPRIGHT, command=none, unlocated=lambda time: ())
+        links = SimpleNamespace(at=lambda time: UPRIGHT, command=none, unlocated=())
         control = SimpleNamespace(
             estimator=estimator, controller=controller, estimate=self.on_trajectory, decide=self.decided, send=none,
             links=links, start_links=none, resting_place=None, stand=none,

@@ -151,8 +151,9 @@ class FlightState:
             descent_start = sent.descent
         descent = descent_start, self.parameters[px4.PARAM_LAND_SPEED], settings.descent_ramp, sent is not None
         plan = self._plan_of_ground(sent, measured, now, descent) or HoldPlan.to_rest(
-            now, measured.position, measured.velocity, euler_of(measured.attitude)[2], settings.braking, *descent
-        )
+            now, measured.position, measured.velocity, euler_of(measured.attitude)[2], settings.braking,
+            max(descent_start, now), *descent[1:],
+        )  # fmt: skip
         thrust, weight = self.actuation.thrust, self.airframe.mass * self.airframe.g
         if not self.land.in_air:
             self.land.lift(thrust)
