@@ -31,8 +31,8 @@ class MpcWeights(SettingsTable):
     uav_tilt_rate: float = setting(0.02, "s2/rad2", "weight of a UAV's tilt rate", ge=0.0)
     thrust: float = setting(0.002, "1/N2", "weight of a UAV's thrust", ge=0.0)
     # The least weights of set-points with which the loop at hover bears a delay of a control period that it does not
-    # know of (a set-point that is lost), also with a third of the payload (control/delay_margin.py). The vertical
-    # weights of position and velocity go with that of thrust: the margin does not depend on them.
+    # know of (a set-point that is lost), also with a third of the payload (control/delay_margin.py). The margin
+    # does not depend on the vertical weights of position and velocity: they keep the touch-down close to its plan.
     tilt_setpoint: float = setting(60.0, "1/rad2", "weight of a tilt set-point", gt=0.0)
     thrust_setpoint: float = setting(0.12, "1/N2", "weight of a thrust set-point", gt=0.0)
 

@@ -104,14 +104,18 @@ class ErrorStateFilter(StructuredKalmanFilter):
 
     def advance(self, interval: PropagationInterval, k: int, force_scale: float) -> None:
         """Propagate from time ``k`` to the next under the set-points in force; ``force_scale``: of process noise."""
+        nonlinear = interval.nonlinear_part(k, self.x)
+        self.advance_linear(interval, k, force_scale)
+        self.x = self.x + interval.defect(k) + nonlinear
+
+    def advance_linear(self, interval: PropagationInterval, k: int, force_scale: float) -> None:
+        """Propagate as :meth:`advance`, the covariance whole, the state by the linear model alone."""
         _, change, probability = interval.setpoints[k]
         duration = interval.durations[k]
-        nonlinear = interval.nonlinear_part(k, self.x)
         self.propagate(
             self.process.transition(duration), interval.force_of_mass[k], interval.input(k),
             self.process.noise(duration, force_scale), _NONE if change is None else change, probability,
         )  # fmt: skip
-        self.x = self.x + interval.defect(k) + nonlinear
 
     def state_ahead(self, interval: PropagationInterval, k: int) -> Array:
         """Return the absolute state (n,) at the end of the interval from that at time ``k``, which remains."""
@@ -195,5 +199,5 @@ class Outlook(NamedTuple):
         filter = ErrorStateFilter(self.process)
         filter.start(self.interval.nominal[0], self.P, self.interval)
         for k in range(self.k, end):
-            filter.advance(self.interval, k, self.force_scale)
+            filter.advance_linear(self.interval, k, self.force_scale)
         return filter.P

@@ -37,38 +37,37 @@ def test_vehicle_lost_while_rotors_spool_down_lands_with_the_others(tmp_path, wi
     assert max(summary["payload_tilt_max_deg"].values()) < 10.0
 
 
-@pytest.mark.slow
-def test_links_stay_upright_until_the_rotors_stop_with_a_wrong_attitude_and_a_lost_position_in_wind(tmp_path) -> None:
-    system_file(tmp_path)
-    mission = tmp_path / "hop.toml"
-    mission.write_text(
-        HOP
-        + '\n[[fault]]\nkind = "wind"\nstart = 0.0\nrise = 0.0\nvelocity = [2.8, 2.8, 0.0]\n'
-        + '\n[[fault]]\nkind = "position_lost"\nstart_phase = "land"\nvehicles = [2]\n'
-        + '\n[[fault]]\nkind = "bias"\nchannel = "attitude"\nat_source = true\namount = 0.1\n'
-        + 'start_phase = "spool_down"\nvehicles = [3]\n'
-    )
-    with InProcessFlight(mission, tmp_path / "run", seed=3) as flight:
+def landed_hop(folder, faults):
+    """Return the summary of a hop with ``faults`` whose payload was set down."""
+    system_file(folder)
+    mission = folder / "hop.toml"
+    mission.write_text(HOP + faults)
+    with InProcessFlight(mission, folder / "run", seed=3) as flight:
         flight.fly()
         assert flight.flight.landed
         summary = flight.summary()
     assert is_set_down(summary["landing"]), summary["landing"]
+    return summary
+
+
+@pytest.mark.slow
+def test_links_stay_upright_until_the_rotors_stop_with_a_wrong_attitude_and_a_lost_position_in_wind(tmp_path) -> None:
+    summary = landed_hop(
+        tmp_path,
+        '\n[[fault]]\nkind = "wind"\nstart = 0.0\nrise = 0.0\nvelocity = [2.8, 2.8, 0.0]\n'
+        '\n[[fault]]\nkind = "position_lost"\nstart_phase = "land"\nvehicles = [2]\n'
+        '\n[[fault]]\nkind = "bias"\nchannel = "attitude"\nat_source = true\namount = 0.1\n'
+        'start_phase = "spool_down"\nvehicles = [3]\n',
+    )
     assert summary["contacts"] == 0 and summary["uav_separation_min_m"] > 0.6
 
 
 @pytest.mark.slow
 def test_payload_is_set_down_in_wind_that_rises_after_all_positions_are_lost_just_before_touch_down(tmp_path) -> None:
-    system_file(tmp_path)
-    mission = tmp_path / "hop.toml"
-    mission.write_text(
-        HOP
-        + '\n[[fault]]\nkind = "position_lost"\nstart_phase = "land"\n'
-        + '\n[[fault]]\nkind = "wind"\nrise = 0.0\nvelocity = [2.8, 2.8, 0.0]\n'
-        + 'start_phase = "land"\nstart_offset = 1.2\n'
+    summary = landed_hop(
+        tmp_path,
+        '\n[[fault]]\nkind = "position_lost"\nstart_phase = "land"\n'
+        '\n[[fault]]\nkind = "wind"\nrise = 0.0\nvelocity = [2.8, 2.8, 0.0]\n'
+        'start_phase = "land"\nstart_offset = 1.2\n',
     )
-    with InProcessFlight(mission, tmp_path / "run", seed=3) as flight:
-        flight.fly()
-        assert flight.flight.landed
-        summary = flight.summary()
-    assert is_set_down(summary["landing"]), summary["landing"]
     assert summary["contacts"] == 0 and summary["uav_separation_min_m"] > 0.8
