@@ -9,6 +9,7 @@ from nonlinear_motion import hover_state, uav_positions
 from paper_system import system
 from world_runs import STANDING_ON_GROUND, STANDING_ON_PAD, angle_between, place, run, uav_array, unequal
 
+from gcs.config.tables import WorldConfig
 from vehicle_sim.world.world import World
 
 
@@ -97,6 +98,22 @@ def test_payload_landed_beside_the_pad_rests_on_the_ground():
         assert uav_array(state, "cradled").all()
         assert world.touching_ground()
         assert world.contacts().pairs == 0
+
+
+def test_payload_that_drifts_against_the_pad_as_it_lands_beside_it_collides_with_nothing():
+    parameters = system(4)
+    with World(parameters) as world:
+        beside = 0.5 + WorldConfig().pad.margin + 0.5
+        start = hover_state(parameters, (beside + 0.02, 0.0, STANDING_ON_GROUND - 0.03))
+        place(world, replace(start, r_0_dot=np.array([-0.3, 0.0, 0.2])))
+        seen = []
+        for _ in range(world.physics_hz):
+            world.step((0.5 * parameters.hover_thrust).tolist(), [(0.0, 0.0, 0.0)] * 4)
+            seen.append(world.contacts())
+        # The side of the payload is at the pad.
+        assert world.state().payload_position_in_world[0] == pytest.approx(beside, abs=0.01)
+        assert seen[-1].standing
+        assert not any(contacts.pairs for contacts in seen)
 
 
 def test_last_cradle_releases_though_the_others_have_lifted_the_payload():

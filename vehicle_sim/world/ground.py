@@ -22,8 +22,8 @@ _STANDING_DEPTH = 0.02
 class Contacts(NamedTuple):
     """``pairs``: number of pairs of parts that touch; ``standing``: the payload stands on pad or ground.
 
-    The payload standing and UAVs in their cradles do not count as pairs; a part and its neighbour on the same link
-    cannot touch.
+    The payload standing, or at the pad with any of its faces, and UAVs in their cradles do not count as pairs; a part
+    and its neighbour on the same link cannot touch.
     """
 
     pairs: int
@@ -52,7 +52,7 @@ class Ground:
             0.0, box, basePosition=middle, useMaximalCoordinates=1, physicsClientId=client
         )  # fmt: skip
         self._client = client
-        self._bodies = ground, stand
+        self._ground, self._pad = ground, stand
         self._lower_face = payload.below - _STANDING_DEPTH  # m below the centre
         self.standing_height = pad.thickness + payload.reach + 0.05
 
@@ -61,7 +61,7 @@ class Ground:
         points = pybullet.getContactPoints(physicsClientId=self._client)
         if not points:
             return NO_CONTACTS
-        body, grounds = system.body, self._bodies
+        body, ground, pad = system.body, self._ground, self._pad
         (x, y, z), attitude = payload
         up_x, up_y, up_z = upward_axis(product(attitude, system.payload_in_axes))
         lower_face = up_x * x + up_y * y + up_z * z - self._lower_face
@@ -72,10 +72,11 @@ class Ground:
                 continue
             if body_b == body and body_a != body_b:
                 body_a, body_b, link_a, link_b, on_a = body_b, body_a, link_b, link_a, on_b
-            is_of_payload = link_a == -1 and body_b in grounds
-            if is_of_payload and up_x * on_a[0] + up_y * on_a[1] + up_z * on_a[2] < lower_face:
+            of_payload, at_pad = link_a == -1, body_b == pad
+            below = up_x * on_a[0] + up_y * on_a[1] + up_z * on_a[2] < lower_face
+            if of_payload and below and (at_pad or body_b == ground):
                 standing = True
-            else:
+            elif not (of_payload and at_pad):
                 pairs.add((body_a, link_a, body_b, link_b))
         if not pairs:
             return _STANDING if standing else NO_CONTACTS
