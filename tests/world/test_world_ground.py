@@ -1,5 +1,6 @@
 """The ground of the PyBullet world, its pad and its cradles."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -114,6 +115,25 @@ def test_payload_that_drifts_against_the_pad_as_it_lands_beside_it_collides_with
         assert world.state().payload_position_in_world[0] == pytest.approx(beside, abs=0.01)
         assert seen[-1].standing
         assert not any(contacts.pairs for contacts in seen)
+
+
+def test_payload_below_leaning_links_stays_where_it_was_set_down():
+    """The engine, left to itself, doubles its motion every 1.6 s there."""
+    parameters, lean = system(4), np.radians([8.0, 10.0, 6.0, 9.0])
+    q = np.column_stack([0.95 * np.sin(lean), np.full(4, -0.3 * math.sin(lean[0])), np.zeros(4)])
+    q[:, 2] = np.sqrt(1.0 - np.square(q).sum(axis=1))
+    with World(parameters) as world:
+        place(world, replace(hover_state(parameters, (5.0, 0.0, STANDING_ON_GROUND - 0.001)), q=q))
+        run(world, 0.5, (0.98 * parameters.m * parameters.g).tolist())
+        before = run(world, 0.5, [0.0] * 4)
+        after = run(world, 15.0, [0.0] * 4)
+        assert world.all_cradled and world.touching_ground()
+        assert after.payload_position_in_world == pytest.approx(before.payload_position_in_world, abs=1e-6)
+        assert math.hypot(*after.payload_velocity_in_world) < 1e-6
+        # It is free with the first UAV.
+        assert world.contacts().pairs == 0
+        state = run(world, 1.0, (1.1 * parameters.hover_thrust).tolist())
+        assert state.payload_position_in_world[2] < STANDING_ON_GROUND - 0.05
 
 
 def test_last_cradle_releases_though_the_others_have_lifted_the_payload():

@@ -137,10 +137,11 @@ _MAX_FORCE = 1e4
 
 
 class Cradles:
-    """One fixed constraint to the world for every UAV that is held.
+    """One fixed constraint to the world for every UAV that is held, and for the payload that stands below them.
 
     A cradle opens when the upward part of the thrust exceeds the UAV's weight by a factor (the pull on the link is what
-    keeps it upright) and closes again below the weight itself; the gap between the two prevents chatter.
+    keeps it upright) and closes again below the weight itself; the gap between the two prevents chatter. Between links
+    whose UAVs are all held the engine lets a payload hang and stand at once, and leaning links would swing it up.
     """
 
     def __init__(
@@ -154,11 +155,22 @@ class Cradles:
         self._release_thrusts = [settings.release_factor * weight for weight in weights]
         self._latch_speed = settings.latch_speed
         self._constraints: list[int | None] = [None] * len(self._links)
+        self._payload: int | None = None
         self.number_held = 0
 
     def held(self, i: int) -> bool:
         """Return True if UAV ``i`` (from 0) is held."""
         return self._constraints[i] is not None
+
+    @property
+    def all_held(self) -> bool:
+        """True if every UAV is held."""
+        return self.number_held == len(self._links)
+
+    @property
+    def payload_held(self) -> bool:
+        """True if the payload is held, too."""
+        return self._payload is not None
 
     def due(self, thrusts: Sequence[float], uavs: Uavs) -> list[int]:
         """Return the UAVs (from 0) to be released: held, lifting more than their weight; or latched: free, slow, less.
@@ -177,20 +189,33 @@ class Cradles:
 
     def latch(self, i: int, position: Sequence[float], quaternion: Sequence[float]) -> None:
         """Hold UAV ``i`` at a pose, in the engine's frame and order."""
-        if self._constraints[i] is not None:
-            return
-        constraint = pybullet.createConstraint(
-            self._body, self._links[i], -1, -1, pybullet.JOINT_FIXED, [0.0] * 3, [0.0] * 3, position,
+        if self._constraints[i] is None:
+            self._constraints[i] = self._fixed(self._links[i], position, quaternion)
+            self.number_held += 1
+
+    def latch_payload(self, position: Sequence[float], quaternion: Sequence[float]) -> None:
+        """Hold the payload at a pose of its principal axes, until the first UAV is released."""
+        if self._payload is None:
+            self._payload = self._fixed(-1, position, quaternion)
+
+    def release(self, i: int) -> None:
+        """Release UAV ``i``, and the payload."""
+        constraint = self._constraints[i]
+        if constraint is not None:
+            self._remove(constraint)
+            self._constraints[i] = None
+            self.number_held -= 1
+        if self._payload is not None:
+            self._remove(self._payload)
+            self._payload = None
+
+    def _fixed(self, link: int, position: Sequence[float], quaternion: Sequence[float]) -> int:
+        constraint: int = pybullet.createConstraint(
+            self._body, link, -1, -1, pybullet.JOINT_FIXED, [0.0] * 3, [0.0] * 3, position,
             [0.0, 0.0, 0.0, 1.0], quaternion, physicsClientId=self._client,
         )  # fmt: skip
         pybullet.changeConstraint(constraint, maxForce=_MAX_FORCE, physicsClientId=self._client)
-        self._constraints[i] = constraint
-        self.number_held += 1
+        return constraint
 
-    def release(self, i: int) -> None:
-        """Release UAV ``i``."""
-        constraint = self._constraints[i]
-        if constraint is not None:
-            pybullet.removeConstraint(constraint, physicsClientId=self._client)
-            self._constraints[i] = None
-            self.number_held -= 1
+    def _remove(self, constraint: int) -> None:
+        pybullet.removeConstraint(constraint, physicsClientId=self._client)

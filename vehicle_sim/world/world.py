@@ -191,7 +191,7 @@ class World(EngineWorld):
     @property
     def all_cradled(self) -> bool:
         """Return True if every UAV is held by its cradle."""
-        return self._cradles.number_held == len(self._system.uavs)
+        return self._cradles.all_held
 
     @property
     def any_lifted(self) -> bool:
@@ -213,7 +213,7 @@ class World(EngineWorld):
 
     def touching_ground(self) -> bool:
         """Return True if the payload stands on pad or ground."""
-        return self._is_low and self.contacts().standing
+        return self._is_low and (self._cradles.payload_held or self.contacts().standing)
 
     @property
     def _is_low(self) -> bool:
@@ -229,6 +229,14 @@ class World(EngineWorld):
             # A payload that has been caught by some hangs on their links as well.
             elif self._is_low and (cradles.number_held > 0 or self.touching_ground()):
                 cradles.latch(i, uavs[i][0], uavs[i][1])
+        if cradles.all_held and not cradles.payload_held and self.touching_ground() and self._payload_rests:
+            cradles.latch_payload(*self._readings.payload)
+
+    @property
+    def _payload_rests(self) -> bool:
+        """Return True if no point of the payload moves."""
+        *velocity, p, q, r = self._readings.states[0, 7:].tolist()
+        return math.hypot(*velocity) + self.parameters.payload.reach * math.hypot(p, q, r) < self._rest.speed
 
 
 def _parts(row: list[float]) -> tuple[Vector, Quaternion, Vector, Vector]:
