@@ -10,7 +10,7 @@ from gcs.config import RangeSensorConfig, SystemConfig
 from gcs.mission.fence import boundary_walls
 from gcs.mission.model import Mission, Obstacle
 from idc_controller.control.controller import IntegratedDecisionController
-from idc_controller.control.mpc import ModelPredictiveController
+from idc_controller.control.gain_schedule import ScheduledMpc
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.grounded_links import GroundedLinks
 from idc_controller.estimation.measurements import MeasurementNoise
@@ -204,7 +204,7 @@ def controller(
     mpc = replace(config.control.mpc, period=period, tuning=config.controller)
     return IntegratedDecisionController(
         model,
-        ModelPredictiveController(model, mpc),
+        ScheduledMpc(model, mpc),
         safety,
         replace(config.control.controller, period=period, wind=config.estimation.wind, ground=config.control.ground),
         stopwatch,

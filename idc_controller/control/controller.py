@@ -155,7 +155,7 @@ class IntegratedDecisionController:
             u = self._ground_controller.setpoints(links, stages) if touched_down else stages.u[0].copy()
             tracked = self._stopwatch()
         else:
-            output = self.tracker.track(error, stages)
+            output = self.tracker.track(error, stages, estimate.age)
             tracked = self._stopwatch()
             u = setpoints(output.delta_u, flat.u[-1], self._hover)
             u = self.safety.correct(estimate.time, u, estimate)

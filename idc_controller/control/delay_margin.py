@@ -6,7 +6,7 @@ loss of one of those is not known yet. A vehicle that gets no set-point flies th
 """
 
 from collections.abc import Callable
-from itertools import pairwise
+from itertools import chain, pairwise
 
 import numpy as np
 
@@ -75,17 +75,21 @@ class HoverLoop:
         """
         return _crossing(lambda delay: self.spectral_radius(delay, payload_mass), 0.0, 6e-6 * self._period_us)
 
-    def mean_square_growth(self, steps: int, loss: float) -> float:
+    def mean_square_growth(self, steps: int, loss: float, late: int = 0) -> float:
         """Return by which factor the mean square of the state grows in a step; below 1 the loop is stable.
 
         Args:
-            steps: age of the newest known state when the set-points act, in control periods, at least 1.
+            steps: age of the newest known state when the set-points should act, in control periods, at least 1.
             loss: probability with which each set-point to each vehicle is lost, independently.
+            late: control periods by which set-points act later than they should, of which the loop does not know.
         """
         n, m = self._n, self._m
-        size = n + m * (steps + 1)
-        # State: x; then sent less flown of the set-points 1 .. steps periods ago; then the set-points flown last.
-        past = [slice(n + k * m, n + (k + 1) * m) for k in range(steps)]
+        size = n + m * (steps + late + 1)
+        # State: x; then sent less flown of the set-points 1 .. steps periods ago; then those sent 1 .. late periods
+        # ago; then the set-points flown last.
+        past, sent = (
+            [slice(n + k * m, n + (k + 1) * m) for k in of] for of in (range(steps), range(steps, steps + late))
+        )
         flown = slice(size - m, size)
         V = np.zeros((m, size))  # what is sent: K (x + sum of A^(k-1) B (sent - flown))
         V[:, :n] = self.K
@@ -93,15 +97,22 @@ class HoverLoop:
         for k in range(steps):
             V[:, past[k]] = self.K @ effect
             effect = self.A @ effect
-        change = V.copy()  # sent less flown before
+        arriving = np.zeros((m, size))
+        if late:
+            arriving[:, sent[-1]] = np.eye(m)
+        else:
+            arriving = V
+        change = arriving.copy()  # arriving less flown before
         change[:, flown] -= np.eye(m)
         into = np.zeros((size, m))  # what one unit that is not flown changes
         into[:n], into[past[0]], into[flown] = -self.B, np.eye(m), -np.eye(m)
         mean = np.zeros((size, size))
-        mean[:n, :n], mean[flown] = self.A, V
-        mean[:n] += self.B @ V
-        for k in range(1, steps):
-            mean[past[k], past[k - 1]] = np.eye(m)
+        mean[:n, :n], mean[flown], mean[past[0]] = self.A, arriving, V - arriving
+        mean[:n] += self.B @ arriving
+        if late:
+            mean[sent[0]] = V
+        for older, newer in chain(pairwise(past[::-1]), pairwise(sent[::-1])):
+            mean[older, newer] = np.eye(m)
         mean += loss * into @ change
         of_vehicle = np.concatenate([np.repeat(np.arange(self._number_of_uavs), 2), np.arange(self._number_of_uavs)])
         same = of_vehicle[:, None] == of_vehicle
@@ -113,9 +124,9 @@ class HoverLoop:
             P /= trace
         return float(np.exp(np.mean(np.log(growth[-_AVERAGED:]))))
 
-    def loss_margin(self, steps: int) -> float:
-        """Return the loss at which the mean square of the state no longer shrinks; ``steps`` as above."""
-        return _crossing(lambda loss: self.mean_square_growth(steps, loss), 0.0, 1.0)
+    def loss_margin(self, steps: int, late: int = 0) -> float:
+        """Return the loss at which the mean square of the state no longer shrinks; ``steps`` and ``late`` as above."""
+        return _crossing(lambda loss: self.mean_square_growth(steps, loss, late), 0.0, 1.0)
 
 
 def expected_extra_age(loss: float, period: float) -> float:

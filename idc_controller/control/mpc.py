@@ -40,8 +40,11 @@ class Tracker(Protocol):
     horizon: int
     """Number N_p of the last stage of the reference that it needs."""
 
-    def track(self, error: Array, reference: FlatReference) -> TrackingOutput:
-        """``error`` (12 + 11 N,) now, ``reference`` over the horizon's stages 0 .. N_p."""
+    def track(self, error: Array, reference: FlatReference, age: float) -> TrackingOutput:
+        """``error`` (12 + 11 N,) now, ``reference`` over the horizon's stages 0 .. N_p.
+
+        ``age`` of the newest measurement that the error follows from, when the set-points act (s).
+        """
         ...
 
 

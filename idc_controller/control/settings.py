@@ -1,6 +1,6 @@
 """Settings of the tracking controllers: the MPC's horizon, limits and weights, and how the load is learnt."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -74,6 +74,25 @@ class MpcSettings(SettingsTable):
     neighbour_share: float = 1.3  # pairs of UAVs up to so many times the least distance apart in hover are neighbours
     slack_linear: float = 1e3  # linear cost of exceeding a limit of the state
     slack_quadratic: float = 1e4  # quadratic cost of exceeding a limit of the state
+
+    # s; set-points that act so long after the newest measurement get the lower bandwidth: two control periods, which a
+    # link of 25 ms one way takes, the latency of the alarm link_latency
+    late_age: float = 0.1
+    late_memory: float = 1.0  # s; for which it is kept
+    # by what the weights of set-points are multiplied then: the least with which the loop bears a delay of a control
+    # period that it does not know of up to flight.failsafe.latency_limit (control/delay_margin.py)
+    late_setpoint_factor: float = 10.0
+
+    @property
+    def late(self) -> "MpcSettings":
+        """Settings of the lower bandwidth."""
+        weights, factor = self.tuning.weights, self.late_setpoint_factor
+        slower = replace(
+            weights,
+            tilt_setpoint=factor * weights.tilt_setpoint,
+            thrust_setpoint=factor * weights.thrust_setpoint,
+        )
+        return replace(self, tuning=replace(self.tuning, weights=slower))
 
     @property
     def constraint_stages(self) -> list[int]:

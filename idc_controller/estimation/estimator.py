@@ -331,5 +331,5 @@ class Estimator:
         on_uavs[:, :2] = x[process.uav_force].reshape(-1, 2)
         return Estimate(
             time, x[:n], x[process.force], on_uavs, mass_excess,
-            ahead.force_covariance(), ahead.covariance, tuple(innovations), ahead.payload_variances,
+            ahead.force_covariance(), ahead.covariance, tuple(innovations), ahead.payload_variances, time - self.time,
         )  # fmt: skip

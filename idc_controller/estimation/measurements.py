@@ -204,6 +204,8 @@ class Estimate(NamedTuple):
     """Innovations applied since the last estimate, in order of time; those replayed come again."""
     predict_payload_variances: Callable[[], Array] = lambda: np.full(12, np.nan)
     """Predicts the variances of the payload's position, velocity, attitude (Euler angles) and rates (12,) squared."""
+    age: float = 0.0
+    """Of the newest measurement (s)."""
 
     @property
     def covariance(self) -> Array:

@@ -15,7 +15,7 @@ from gcs.config.overrides import with_settings
 from gcs.config.tables import Cargo
 from gcs.errors import UnusableInput
 from gcs.flight import stack
-from idc_controller.control.mpc import ModelPredictiveController
+from idc_controller.control.gain_schedule import ScheduledMpc
 
 REPOSITORY = Path(__file__).parents[2]
 EXAMPLE = REPOSITORY / "missions" / "system.toml"
@@ -65,8 +65,8 @@ def test_settings_of_the_file_reach_estimator_guidance_filter_and_controller(tmp
     assert stack.estimator(config, model).settings.history == 0.7
     assert controller.load.wind.settings.memory == 7.0
     assert (safety.settings.jerk, safety.settings.margin, safety.filter_settings.watch) == (0.003, 0.6, 3.0)
-    assert isinstance(controller.tracker, ModelPredictiveController)
-    assert controller.tracker.settings.least_lift == 0.9
+    assert isinstance(controller.tracker, ScheduledMpc)
+    assert [mpc.settings.least_lift for mpc in controller.tracker.by_age] == [0.9, 0.9]
 
 
 def test_system_is_read_back_from_its_own_tables(tmp_path: Path) -> None:

@@ -95,7 +95,7 @@ def test_separation_limit_follows_spacing_of_the_team(spacing, limit):
     config = system(team={"spacing": spacing})
     model = LinearModel(config.parameters())
     tracker = stack.controller(config, model, None, lambda: 0.0).tracker
-    separation = tracker.state_constraints[-1]
+    separation = tracker.by_age[0].state_constraints[-1]
     assert separation.distance == pytest.approx(limit)
     assert separation.limits == pytest.approx(np.full(4, spacing - limit))
 

@@ -183,9 +183,13 @@ class Cradles:
             if self._constraints[i] is not None:
                 if upward > self._release_thrusts[i]:
                     due.append(i)
-            elif upward < self._weights[i] and math.sqrt(v_x * v_x + v_y * v_y + v_z * v_z) < self._latch_speed:
+            elif upward < self._weights[i] and self.catches(math.sqrt(v_x * v_x + v_y * v_y + v_z * v_z)):
                 due.append(i)
         return due
+
+    def catches(self, speed: float) -> bool:
+        """Return whether what moves with ``speed`` (m/s) can be held."""
+        return speed < self._latch_speed
 
     def latch(self, i: int, position: Sequence[float], quaternion: Sequence[float]) -> None:
         """Hold UAV ``i`` at a pose, in the engine's frame and order."""

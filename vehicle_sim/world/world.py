@@ -234,9 +234,9 @@ class World(EngineWorld):
 
     @property
     def _payload_rests(self) -> bool:
-        """Return True if no point of the payload moves."""
+        """Return True if no point of the payload is faster than what a cradle catches."""
         *velocity, p, q, r = self._readings.states[0, 7:].tolist()
-        return math.hypot(*velocity) + self.parameters.payload.reach * math.hypot(p, q, r) < self._rest.speed
+        return self._cradles.catches(math.hypot(*velocity) + self.parameters.payload.reach * math.hypot(p, q, r))
 
 
 def _parts(row: list[float]) -> tuple[Vector, Quaternion, Vector, Vector]:
