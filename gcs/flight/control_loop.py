@@ -159,8 +159,9 @@ class ControlLoop:
         """Take over the set-points of a step in the air, which leave at ``leaves`` (N,) and act at ``effective``.
 
         Without set-points the vehicles hold for a while, but land when the payload would: in ``until_landing`` (s),
-        zero while it lands. Where that becomes known late the descent of one plan after the other is brought forward
-        no faster than time passes, so that vehicles with plans that differ by a round trip still descend together.
+        zero while it lands. From one plan to the next the descent is brought forward by no more than the time that has
+        passed, and put off by no more than twice that: vehicles with plans that differ by a round trip still descend
+        together.
 
         The stop plan goes on only with what every vehicle is known to have received. So a vehicle that is cut off, and
         all that are later, have plans that differ by a round trip of the links at most, whichever each received last.
@@ -168,11 +169,14 @@ class ControlLoop:
         self.compute_times.lap(Part.MONITORING)
         self.estimator.setpoints.add(effective, record.decision.u, leaves)
         plans, forces, flat = self.stop_plans, self.controller.hover_forces(effective), record.decision.flat
-        earliest = plans[-1].descent - (effective - plans[-1].start) if plans else -math.inf
-        landing = self._descent if until_landing <= 0.0 and earliest <= effective else None
+        left = min(hold.duration, max(until_landing, 0.0))
+        if plans:
+            passed, left_before = effective - plans[-1].start, plans[-1].descent - plans[-1].start
+            left = min(max(left, left_before - 2.0 * passed), left_before + passed)
+        landing = self._descent if left <= 0.0 else None
         plan = stop_plan(self.controller.parameters, flat, effective, record.estimate.x, self.brake, landing)
         if landing is None:
-            plan = plan._replace(descent=max(effective + min(hold.duration, until_landing), earliest))
+            plan = plan._replace(descent=effective + left)
         plans.append(plan._replace(hover_forces=forces))
         received = self.estimator.setpoints.received_by_all(effective, hold.unconfirmed_max)
         while len(plans) > 1 and plans[1].start <= received:

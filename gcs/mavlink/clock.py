@@ -74,6 +74,7 @@ class RemoteClock:
             self.set_back += self._lead - lead
         if began_anew := was_set_back or lead < self._lead - self._settings.reboot:
             self._slices.clear()
+            self._lags.clear()
         if in_order:
             self._newest = boot_time
             self.newest = boot_time + self.set_back, arrival

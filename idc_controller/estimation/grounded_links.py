@@ -62,11 +62,13 @@ class _Command(NamedTuple):
 class _Payload:
     """The payload on the ground, by its unit's telemetry: it stands, or slides."""
 
-    def __init__(self, time: float, x: Array, settings: GroundedLinksSettings) -> None:
-        """``x``: position, velocity, Euler angles and body rates (12,) at ``time`` (s)."""
+    def __init__(self, time: float, x: Array, arm: float, settings: GroundedLinksSettings) -> None:
+        """``x``: position, velocity, Euler angles and body rates (12,) at ``time`` (s); ``arm`` of the feet (m)."""
         self._time, self._settings = time, settings
-        self._position, self.velocity, self._rates = x[:3].copy(), x[3:6].copy(), x[9:12].copy()
-        self._velocity = np.clip(self.velocity, -settings.payload_speed_max, settings.payload_speed_max)
+        self._speed_max, self._rate_max = settings.payload_speed_max, settings.payload_speed_max / arm
+        self._position, self.velocity = x[:3].copy(), x[3:6].copy()
+        self._velocity = np.clip(self.velocity, -self._speed_max, self._speed_max)
+        self._rates = np.clip(x[9:12], -self._rate_max, self._rate_max)
         self._turn = rotation_from_quaternion(quaternion_from_euler(*x[6:9]))
 
     def add(self, measurement: Measurement) -> None:
@@ -74,11 +76,12 @@ class _Payload:
         s = self._settings
         if isinstance(measurement, Attitude):
             if measurement.has_pose and measurement.has_motion:
-                self._turn, self._rates = rotation_from_quaternion(measurement.pose), measurement.motion
+                self._turn = rotation_from_quaternion(measurement.pose)
+                self._rates = np.clip(measurement.motion, -self._rate_max, self._rate_max)
             return
         if measurement.has_motion:
             self.velocity = measurement.motion
-            self._velocity = np.clip(measurement.motion, -s.payload_speed_max, s.payload_speed_max)
+            self._velocity = np.clip(measurement.motion, -self._speed_max, self._speed_max)
         if measurement.has_pose and measurement.time > self._time:
             predicted = self._position + (measurement.time - self._time) * self._velocity
             off = np.clip(measurement.pose - predicted, -s.payload_step_max, s.payload_step_max)
@@ -124,7 +127,8 @@ class GroundedLinks:
         """What all have of b (2,), and what each UAV has beside it (N, 2), low-passed."""
         self._offsets = np.zeros((number, 2))
         """What each UAV had beside it in the air (N, 2), and what its attitude has stepped since."""
-        self._payload = _Payload(0.0, np.zeros(12), s)
+        self._arm = float(np.linalg.norm(p.p, axis=1).max())
+        self._payload = _Payload(0.0, np.zeros(12), self._arm, s)
         self._commands: deque[_Command] = deque()
 
     def start(
@@ -140,7 +144,7 @@ class GroundedLinks:
             drag: of the wind on each of them (2,) (N).
             unlocated: UAVs (from 0) without a position.
         """
-        self._payload = _Payload(time, payload, self._settings)
+        self._payload = _Payload(time, payload, self._arm, self._settings)
         self._times[:] = time
         self._located[:] = time
         self._located[[*unlocated]] = -math.inf

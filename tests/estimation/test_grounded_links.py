@@ -158,6 +158,17 @@ def test_link_swings_about_a_foot_that_the_ground_stops():
     assert links.at(0.0).x[S_DOT, :, 0] == pytest.approx(-0.3 / P.l)
 
 
+def test_impossible_motion_of_the_payload_hardly_moves_the_links():
+    level = quaternion_from_euler(0.0, 0.0, 0.0)
+    for spike in (
+        Attitude(0.0, PAYLOAD, level, np.array([80.0, -80.0, 0.0])),
+        Position(0.0, PAYLOAD, np.zeros(3), np.array([80.0, -80.0, 0.0])),
+    ):
+        links = started()
+        links.add(spike)
+        assert np.abs(links.at(0.0).x[S_DOT]).max() < 0.5 / P.l.min() + 1e-9
+
+
 def test_uav_whose_positions_have_stopped_in_the_air_has_none():
     links = GroundedLinks(P)
     for uav in range(4):

@@ -160,6 +160,15 @@ def test_landing_that_is_decided_late_brings_the_descent_forward_step_by_step(un
     assert changes[:49] == pytest.approx(-PERIOD) and changes[50:] == pytest.approx(PERIOD)
 
 
+def test_landing_that_begins_to_wait_puts_the_descent_off_step_by_step(unconfirmed):
+    loop = unconfirmed
+    record = loop.decide(estimated(), REST, learn_load=False)
+    for k in range(120):
+        loop.send(record, 5.0 + PERIOD * k, np.full(N, 4.95), Hold(5.0, 0.9), np.inf if k else 0.0)
+    changes = np.diff([plan.descent for plan in loop.stop_plans])
+    assert changes[:100] == pytest.approx(2.0 * PERIOD) and changes[101:] == pytest.approx(PERIOD)
+
+
 UPRIGHT = LinkStates(np.zeros((6, N, 2)), SYSTEM.parameters().hover_thrust, np.zeros(2))
 
 
