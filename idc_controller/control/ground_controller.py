@@ -34,13 +34,19 @@ class GroundController:
         """Return tilts and thrusts (3 N,) that bring ``links`` to those of the ``reference``, with its thrusts."""
         layout, x, f, weight = self.layout, reference.x[0], links.thrust[:, None], self._weight[:, None]
         lean, rate = (x[part].reshape(-1, 2) for part in (layout.s, layout.s_dot))
-        holding = -links.x[OFF] - (links.drag + (f - weight) * lean) / np.maximum(f, weight)
+        off = self._bounded(links.x[OFF])
+        holding = -off - (links.drag + (f - weight) * lean) / np.maximum(f, weight)
         states = np.stack([links.x[S] - lean, links.x[S_DOT] - rate, links.x[N] - holding, *links.x[N_DOT:]], axis=1)
         tilts = holding - np.einsum("ik,ikc->ic", self.gains, states)
-        size = np.maximum(np.linalg.norm(tilts, axis=1, keepdims=True), self._tilt_max)
         u = reference.u[0].copy()
-        u[layout.n_setpoint] = (tilts * (self._tilt_max / size)).ravel()
+        # The thrust is bounded, not the attitude, which may be wrong on board by as much.
+        u[layout.n_setpoint] = (self._bounded(tilts + off) - off).ravel()
         return np.asarray(u)
+
+    def _bounded(self, tilts: Array) -> Array:
+        """Return ``tilts`` (N, 2), none larger than the largest."""
+        size = np.maximum(np.linalg.norm(tilts, axis=1, keepdims=True), self._tilt_max)
+        return np.asarray(tilts * (self._tilt_max / size))
 
 
 def pendulum_dynamics(model: LinearModel, uav: int, share: float) -> tuple[Array, Array]:

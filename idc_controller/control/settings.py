@@ -79,8 +79,8 @@ class MpcSettings(SettingsTable):
     # link of 25 ms one way takes, the latency of the alarm link_latency
     late_age: float = 0.1
     late_memory: float = 1.0  # s; for which it is kept
-    # by what the weights of set-points are multiplied then: the least with which the loop bears a delay of a control
-    # period that it does not know of up to flight.failsafe.latency_limit (control/delay_margin.py)
+    # by what the weights of set-points are multiplied then: with it the loop bears a delay of a control period that it
+    # does not know of, up to a latency of 0.1 s one way (control/delay_margin.py)
     late_setpoint_factor: float = 10.0
 
     @property
@@ -107,7 +107,8 @@ class GroundControlSettings(SettingsTable):
     design_share: float = 0.6  # thrust for which the gain is designed, over hover thrust: with it links come upright
     # weights of link tilt, its rate, UAV tilt, its rate, its acceleration
     state: tuple[float, float, float, float, float] = (100.0, 80.0, 1.0, 0.1, 0.0)
-    tilt_max: float = 0.3  # sine of the largest tilt set-point
+    # sine of the largest tilt of a thrust, and of the largest error of an attitude that is compensated
+    tilt_max: float = 0.3
     setpoint: float = 200.0  # weight of the tilt set-point: a lower one needs telemetry that is less than 0.2 s late
 
 

@@ -58,9 +58,13 @@ def test_tilt_of_an_upright_link_compensates_wrong_attitude_and_drag():
     holding = -0.1 - 0.8 / thrust
     # The UAV does not tilt yet: the regulator adds what brings it there.
     expected = holding * (1.0 + GAINS[0, 2])
-    assert set_point(links(off=0.1, drag=0.8)) == pytest.approx([max(expected, -GroundControlSettings().tilt_max), 0.0])
+    tilt = max(expected + 0.1, -GroundControlSettings().tilt_max)
+    assert set_point(links(off=0.1, drag=0.8)) == pytest.approx([tilt - 0.1, 0.0])
 
 
-def test_tilt_set_points_are_bounded_and_zero_for_an_upright_link():
-    assert np.linalg.norm(set_point(links(off=0.8))) == pytest.approx(GroundControlSettings().tilt_max)
+def test_tilt_of_the_thrust_is_bounded_and_zero_for_an_upright_link():
+    largest = GroundControlSettings().tilt_max
+    for off in (0.0, 0.2, -0.2):
+        assert np.linalg.norm(np.add(set_point(links(lean=2.0, off=off)), [off, 0.0])) == pytest.approx(largest)
+    assert np.linalg.norm(set_point(links(off=0.8))) <= 2.0 * largest
     assert set_point(links()) == pytest.approx([0.0, 0.0])

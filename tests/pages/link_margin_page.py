@@ -59,26 +59,34 @@ class Flown(NamedTuple):
         return bool(self.contacts) or self.tilt > 20.0 or self.separation < 0.6
 
 
-def hover_loop() -> HoverLoop:
-    """Return the loop of the default system."""
+def hover_loop(late: bool = False) -> HoverLoop:
+    """Return the loop of the default system; ``late``: with the lower bandwidth."""
     system = SystemConfig()
     model = linear_model(system)
     mpc = replace(system.control.mpc, period=1.0 / system.rates.control, tuning=system.controller)
-    return HoverLoop(model, ModelPredictiveController(model, mpc))
+    return HoverLoop(model, ModelPredictiveController(model, mpc.late if late else mpc))
 
 
 def margins() -> list[dict[str, str]]:
     """Return a row of the first table for each latency, cells by title."""
-    system, loop, rows = SystemConfig(), hover_loop(), []
+    system, rows = SystemConfig(), []
+    loops = hover_loop(), hover_loop(late=True)
     period, settings = 1.0 / system.rates.control, system.flight.failsafe
     for latency in MARGIN_LATENCIES:
-        steps = math.ceil((2.0 * latency + 1.0 / system.rates.telemetry) / period - 1e-9)
-        loss = loop.loss_margin(steps)
+        age = 2.0 * latency + 1.0 / system.rates.telemetry
+        steps = math.ceil(age / period - 1e-9)
+        late = age > system.control.mpc.late_age
+        loss = loops[late].loss_margin(steps)
+        growth = [loop.mean_square_growth(steps, 0.0, late=1) for loop in loops]
         allowed = max((k for k in range(100) if latency_limit(settings, k / 100.0, period) >= latency), default=None)
         flown = "not flown" if allowed is None else f"{allowed / 100.0:.2f}"
         rows.append({
             "latency one way": f"{latency * 1e3:.0f} ms",
             "age of the newest known state": f"{steps} periods",
+            "bandwidth": "lower" if late else "usual",
+            "growth where set-points act a period late": f"{growth[late]:.2f} (usual bandwidth {growth[0]:.2f})"
+            if late
+            else f"{growth[0]:.2f}",
             "loss of set-points at which the mean square grows": f"{loss:.2f}",
             "age that it adds in the mean": f"{expected_extra_age(loss, period) * 1e3:.0f} ms",
             "loss up to which it is flown": "any" if latency <= settings.latency_any_loss else flown,
