@@ -4,8 +4,8 @@ All of them start from one moment of one reference and take the same time, so th
 between them. Along each axis the position is the quartic that takes over position, velocity and acceleration and ends
 without velocity and acceleration; a quartic is a Bezier curve of five control points, as many as fit into a message.
 
-A landing is not held up: of the speed at which the payload sinks, as much as that of the vehicles' own descent remains,
-and they go on from it.
+A landing is not held up: the stop of what sinks ends where the vehicles' own descent is as fast, and that goes on from
+the speed at which the payload sinks.
 
 In wind the team is not where the reference has it. The plan starts where the team is: all of it is moved alike, so
 that no UAV is biased towards a place that the payload was meant to have.
@@ -98,9 +98,6 @@ def stop_plan(
     braking = choose(time, below)
     duration, begun = braking.duration(below[1]), math.inf
     if landing is not None:  # as if it had begun from rest
-        kept = min(max(float(below[1, 2]), 0.0), landing.speed)
-        begun = kept / landing.speed * landing.ramp
-        state[:, :2, 2] -= 0.5 * kept * begun, kept
-        state[:, 2, 2] = 0.0
+        begun = min(max(float(below[1, 2]) / landing.speed, 0.0), 1.0) * landing.ramp
     points = control_points(state, np.array([duration]), np.array([braking.aside]))
     return StopPlan(time, duration, points, math.inf if landing is None else time - begun)

@@ -89,6 +89,28 @@ def test_stop_plan_starts_at_current_positions_and_translates_all_uavs_alike():
     assert stop_plan(PARAMETERS, flat, 13.7, x).control_points == pytest.approx(usual.control_points)
 
 
+@pytest.mark.parametrize("sinking", [0.0, 0.3, 0.55, 0.8, -0.4])
+@pytest.mark.parametrize("left", [0.0, 0.2, 1.0, 3.0, 6.0])
+def test_descent_that_begins_while_the_payload_is_braked_adds_nothing_to_its_speed(sinking, left):
+    flat = flat_reference(PARAMETERS, RestTrajectory(np.array([1.0, 2.0, -5.0]), 0.0), np.array([5.0]), LOAD)
+    x = flat.x[0].copy()
+    x[5] = sinking
+    plan = stop_plan(PARAMETERS, flat, 5.0, x)
+    points = tuple(tuple(point) for point in plan.control_points[0].tolist())
+    flown = HoldPlan(plan.start, plan.duration, points, 0.0, 5.0 + left, 0.5, 1.0)
+    step = 0.01
+    states = [flown.at(5.0 + step * k) for k in range(1000)]
+    speeds = np.array([state.velocity[2] for state in states])
+    assert speeds[0] == pytest.approx(sinking)
+    assert min(sinking, 0.0) - 1e-9 <= speeds.min() and speeds.max() <= max(sinking, 0.5) + 1e-9
+    assert speeds[-1] == pytest.approx(0.5)
+    # Position and acceleration are those of the velocity.
+    z = np.array([state.position[2] for state in states])
+    assert np.diff(z) == pytest.approx(step * (speeds[1:] + speeds[:-1]) / 2.0, abs=1e-4)
+    a_z = np.array([state.acceleration[2] for state in states])
+    assert np.abs(np.diff(speeds) - step * (a_z[1:] + a_z[:-1]) / 2.0).sum() < 0.02
+
+
 @pytest.mark.parametrize(("sinking", "starts_with"), [(0.0, 0.0), (0.3, 0.3), (0.8, 0.8), (-0.4, -0.4)])
 def test_landing_goes_on_from_its_speed_to_that_of_the_descent(sinking, starts_with):
     flat = flat_reference(PARAMETERS, RestTrajectory(np.array([1.0, 2.0, -0.5]), 0.0), np.array([5.0]), LOAD)

@@ -13,6 +13,7 @@ from operator import mul
 from typing import Any, NamedTuple, Self
 
 import numpy as np
+from scipy.optimize import brentq
 
 from gcs.config.vehicle_settings import HoldSettings
 from idc_controller.rotations_float import Quaternion, Vector, attitude_of_force
@@ -35,7 +36,8 @@ class HoldPlan:
     """A stop along a Bezier curve of degree 4, then a descent from ``descent_start`` on.
 
     ``control_points``: five, in the world (NED, m), passed from ``start`` on in ``duration`` (times in s); ``yaw`` in
-    rad, ``descent_speed`` in m/s, reached in ``descent_ramp`` (s), ``descent_start`` infinite for a plan that stays.
+    rad, ``descent_speed`` in m/s, reached in ``descent_ramp`` (s), ``descent_start`` infinite for a plan that stays. A
+    descent that begins while what sinks is still braked takes over where it is as fast.
     """
 
     start: float
@@ -66,21 +68,46 @@ class HoldPlan:
 
     def at(self, now: float) -> PlannedState:
         """The planned state at a time (s)."""
-        t = min(max(now - self.start, 0.0), self.duration)
-        share = t / self.duration
+        position, velocity, acceleration = braked = self._braked(now)
+        since, depth_before, level = self._takeover
+        if now <= since:
+            return braked
+        depth, sinking, faster = self._descent(now)
+        z, v_z, a_z = (position[2], velocity[2], acceleration[2]) if level is None else (level, 0.0, 0.0)
+        return PlannedState(
+            (*position[:2], z + depth - depth_before), (*velocity[:2], v_z + sinking), (*acceleration[:2], a_z + faster)
+        )
+
+    def _braked(self, now: float) -> PlannedState:
+        """Return the state at a time (s) without the descent."""
+        share = min(max(now - self.start, 0.0), self.duration) / self.duration
         (x, y, z), (v_x, v_y, v_z), (a_x, a_y, a_z) = (on_bezier_curve(points, share) for points in self._curves)
-        descending = now - self.descent_start
-        if descending > 0.0:
-            rate = self.descent_speed / self.descent_ramp
-            if descending < self.descent_ramp:
-                sinking, down = rate * descending, 0.5 * rate * descending**2
-                a_z += rate
-            else:
-                sinking = self.descent_speed
-                down = self.descent_speed * (descending - 0.5 * self.descent_ramp)
-            z += down
-            v_z += sinking
         return PlannedState((x, y, z), (v_x, v_y, v_z), (a_x, a_y, a_z))
+
+    def _descent(self, now: float) -> tuple[float, float, float]:
+        """Return depth (m), speed (m/s) and acceleration (m/s2) at a time (s) of the descent alone, from rest."""
+        descending, rate = max(now - self.descent_start, 0.0), self.descent_speed / self.descent_ramp
+        if descending < self.descent_ramp:
+            return 0.5 * rate * descending**2, rate * descending, rate
+        return self.descent_speed * (descending - 0.5 * self.descent_ramp), self.descent_speed, 0.0
+
+    @cached_property
+    def _takeover(self) -> tuple[float, float, float | None]:
+        """From when on it descends (s), the descent's depth then (m), and the altitude (m, NED), where it sinks then.
+
+        Where it rises instead, the descent is added to the stop.
+        """
+
+        def slower(now: float) -> float:
+            return self._descent(now)[1] - self._braked(now).velocity[2]
+
+        since, braked = max(self.descent_start, self.start), self.start + self.duration
+        if since < braked and slower(since) < 0.0:
+            since = float(brentq(slower, since, braked))
+        elif since == math.inf:
+            return since, 0.0, None
+        position, velocity, _ = self._braked(since)
+        return since, self._descent(since)[0], position[2] if velocity[2] > 0.0 else None
 
     @cached_property
     def _curves(self) -> tuple[list[list[float]], ...]:
