@@ -48,7 +48,8 @@ def _own_deviation(estimate: Estimate, uav: int, direction: Array) -> float:
 def attitude_misaligned(system: System, moment: Moment) -> Trigger | None:
     """Return the vehicle on the ground whose attitude is wrong.
 
-    Taken off with a wrong attitude it would fall aside with its link, until that is compensated.
+    Taken off with a wrong attitude it would fall aside with its link, until that is compensated. Once it is lifted from
+    its cradle, it turns against a drift of its attitude: its body rates still show that.
     """
     if moment.phase not in (Phase.CHECK, Phase.ARM, Phase.SPOOL_UP):
         return None
@@ -57,9 +58,11 @@ def attitude_misaligned(system: System, moment: Moment) -> Trigger | None:
     if min(errors) > limit and not landed:
         text = f"the payload unit reports an attitude {min(errors):.2f} rad off every vehicle's (limit {limit:g} rad)"
         return Trigger(text, source="payload")
-    for i, error in enumerate(errors):
-        if error > limit:
+    drifts = system.preflight.attitude_drift()
+    for i, (error, drift) in enumerate(zip(errors, drifts, strict=True)):
+        if max(error, drift) > limit:
             name = f"vehicle {system.team.links[i].system_id}"
-            right = "that by its rates" if landed else "the payload's"
+            right = "that by its rates" if landed or error <= limit else "the payload's"
+            error = max(error, drift)
             return Trigger(f"{name} reports an attitude {error:.2f} rad off {right} (limit {limit:g} rad)", (i,))
     return None

@@ -77,7 +77,7 @@ class Failsafe(AlarmCode):
     ATTITUDE_MISALIGNED = (Check.STEP, attitude_misaligned, Reaction.BRAKE_AND_LAND,
         "check its navigation, and how it sits in its cradle",
         "until it is lifted from its cradle, a vehicle reports an attitude more than {pad_attitude_error} rad off the "
-        "payload's; where it has landed: off that by its body rates")
+        "payload's; where it has landed, and until the climb: off that by its body rates")
     ARMING_FAILED = (Check.COMMAND, link.sequence_failed(Phase.ARM), Reaction.DISARM, "act on its STATUSTEXT",
         "a vehicle refuses OFFBOARD or arming, or all are not armed within {arm_timeout:g} s")
     DISARMING_FAILED = (Check.COMMAND, link.sequence_failed(Phase.DISARM), Reaction.END_CONTROL,

@@ -108,10 +108,12 @@ class Flight:
         for taken in measurements:
             self.control.estimator.attitude_steps.add(taken)
         used = self.payload_control.add(measurements) if self.phase in CONTROLLED else measurements
+        preflight, steps = self.system.preflight, self.control.estimator.attitude_steps
         if self.phase in (Phase.CHECK, Phase.ARM) or self._in_cradles:
             for taken in measurements:
-                self.system.preflight.add(taken)
-            self.system.preflight.attitude_steps = self.control.estimator.attitude_steps.total.copy()
+                preflight.add(taken)
+        if self.phase in (Phase.CHECK, Phase.ARM, Phase.SPOOL_UP):
+            preflight.attitude_steps, preflight.attitude_drifts = steps.total.copy(), steps.drift.copy()
         return used
 
     @property

@@ -52,6 +52,8 @@ class Preflight:
         """Level parts (2,) of the newest attitudes' downward axes of each source."""
         self.attitude_steps = np.zeros((len(team.links), 2))
         """What the attitude of each vehicle has stepped without rates (N, 2) (rad), to be kept up to date."""
+        self.attitude_drifts = np.zeros((len(team.links), 2))
+        """What it has turned lately without rates (N, 2) (rad), to be kept up to date."""
 
     def attitude_errors(self) -> list[float]:
         """Return the error of each vehicle's attitude as it stands (N,) (rad); 0: not known yet.
@@ -69,6 +71,10 @@ class Preflight:
             float(np.linalg.norm(np.mean(axes, axis=0) - level)) if len(axes) == _ATTITUDES else 0.0
             for axes in vehicles
         ]
+
+    def attitude_drift(self) -> list[float]:
+        """Return what each vehicle's attitude has turned lately without rates (N,) (rad)."""
+        return [float(np.linalg.norm(drift)) for drift in self.attitude_drifts]
 
     def restart(self, *, landed: bool) -> None:
         """Begin anew: on the pad, or where the payload has ``landed``."""

@@ -27,26 +27,27 @@ class GroundController:
     ) -> None:
         """``period`` is the control period (s)."""
         self.layout, self._weight = model.layout, model.parameters.m * model.parameters.g
-        self._tilt_max = settings.tilt_max
+        self._tilt_max, self._off_max = settings.tilt_max, settings.attitude_error_max
         self.gains = np.array([pendulum_gain(model, i, period, settings) for i in range(model.layout.number_of_uavs)])
 
     def setpoints(self, links: LinkStates, reference: FlatReference) -> Array:
         """Return tilts and thrusts (3 N,) that bring ``links`` to those of the ``reference``, with its thrusts."""
         layout, x, f, weight = self.layout, reference.x[0], links.thrust[:, None], self._weight[:, None]
         lean, rate = (x[part].reshape(-1, 2) for part in (layout.s, layout.s_dot))
-        off = self._bounded(links.x[OFF])
+        off = _bounded(links.x[OFF], self._off_max)
         holding = -off - (links.drag + (f - weight) * lean) / np.maximum(f, weight)
         states = np.stack([links.x[S] - lean, links.x[S_DOT] - rate, links.x[N] - holding, *links.x[N_DOT:]], axis=1)
         tilts = holding - np.einsum("ik,ikc->ic", self.gains, states)
         u = reference.u[0].copy()
         # The thrust is bounded, not the attitude, which may be wrong on board by as much.
-        u[layout.n_setpoint] = (self._bounded(tilts + off) - off).ravel()
+        u[layout.n_setpoint] = (_bounded(tilts + off, self._tilt_max) - off).ravel()
         return np.asarray(u)
 
-    def _bounded(self, tilts: Array) -> Array:
-        """Return ``tilts`` (N, 2), none larger than the largest."""
-        size = np.maximum(np.linalg.norm(tilts, axis=1, keepdims=True), self._tilt_max)
-        return np.asarray(tilts * (self._tilt_max / size))
+
+def _bounded(tilts: Array, largest: float) -> Array:
+    """Return ``tilts`` (N, 2), none larger than the ``largest``."""
+    size = np.maximum(np.linalg.norm(tilts, axis=1, keepdims=True), largest)
+    return np.asarray(tilts * (largest / size))
 
 
 def pendulum_dynamics(model: LinearModel, uav: int, share: float) -> tuple[Array, Array]:

@@ -21,7 +21,7 @@ class LoadAdaptation:
     def __init__(self, model: LinearModel, settings: ControllerSettings) -> None:
         self.parameters, self.layout, self.settings = model.parameters, model.layout, settings
         self._weight = self.parameters.m_0 * self.parameters.g
-        self._uav_limit = settings.force_limit * float(self.parameters.m.min()) * self.parameters.g
+        self._uav_limit = settings.force_limit * float(self.parameters.hover_thrust.min())
         self.estimate = Load(self.parameters.m_0, np.zeros(3), np.zeros((self.parameters.number_of_uavs, 3)))
         self.wind = WindEstimator(
             self.parameters.payload.areas, settings.period, settings.drag_limit * self._weight, settings.wind

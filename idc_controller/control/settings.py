@@ -107,8 +107,8 @@ class GroundControlSettings(SettingsTable):
     design_share: float = 0.6  # thrust for which the gain is designed, over hover thrust: with it links come upright
     # weights of link tilt, its rate, UAV tilt, its rate, its acceleration
     state: tuple[float, float, float, float, float] = (100.0, 80.0, 1.0, 0.1, 0.0)
-    # sine of the largest tilt of a thrust, and of the largest error of an attitude that is compensated
-    tilt_max: float = 0.3
+    tilt_max: float = 0.3  # sine of the largest tilt of a thrust
+    attitude_error_max: float = 0.6  # rad; of an attitude that is wrong on board, to which it is compensated
     setpoint: float = 200.0  # weight of the tilt set-point: a lower one needs telemetry that is less than 0.2 s late
 
 

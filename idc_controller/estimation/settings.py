@@ -233,6 +233,7 @@ class AttitudeStepSettings(SettingsTable):
     noise_memory: float = 0.5  # s; over which the noise of the attitudes is followed
     persistent_share: Share = 0.5  # of a step that is left with the next sample: else it was that of one sample
     gap: float = 0.21  # s; between two samples that are compared: four are lost in a row
+    drift_memory: float = 10.0  # s; over which a drift is summed up
     response_min: Share = 0.5  # share of the attitude loop's rate with which a vehicle turns against a step on board
     response_max: float = 2.0  # the same; a blow turns it faster
 
@@ -246,7 +247,7 @@ class EstimatorSettings(SettingsTable):
     simultaneous: float = 0.002  # s; within which measurements are of one moment
     # share of the payload's mass by which the model's may be wrong: the links' frequency is then wrong by half of it
     model_mass_error: Share = 0.25
-    model_mass_time: float = 1.0  # s; for which it must be: twice the time constant of the learnt load
+    model_mass_time: float = 0.3  # s; for which it must be: a blow is shorter
     payload_timeout: float = 0.3  # s; without the payload unit until a payload on ground is held
     process: ProcessNoiseSettings = field(default_factory=ProcessNoiseSettings)
     initial: InitialCovarianceSettings = field(default_factory=InitialCovarianceSettings)

@@ -143,3 +143,18 @@ def test_estimator_takes_a_step_for_a_force_of_the_vehicle_and_goes_on_with_its_
         if ONSET + 0.1 < time < ONSET + 0.3:
             assert not any((UAV, Attitude) in record.rejected for record in estimate.innovations)
     assert estimate.x[LAYOUT.r_0] == pytest.approx(HOVER, abs=0.1)
+
+
+@pytest.mark.parametrize("on_board", [True, False])
+def test_drift_of_an_attitude_is_what_it_turns_without_rates(on_board):
+    """On board the vehicle keeps its attitude as it reports it, and its rates show how it turns against the drift."""
+    rng, steps = np.random.default_rng(3), AttitudeSteps(P, NOISE, AttitudeStepSettings())
+    rate, swing = np.array([0.03, -0.02]), 0.3
+    for k in range(1500):
+        time = PERIOD * k
+        drift, n_dot = rate * max(time - 58.0, 0.0), swing * np.array([np.sin(5.0 * time), 0.0])
+        n = -swing / 5.0 * np.array([np.cos(5.0 * time), 0.0]) + (not on_board) * drift
+        steps.add(attitude(time, n, n_dot - on_board * rate * (time > 58.0), rng))
+        if time < 58.0:
+            assert np.abs(steps.drift).max() < 0.035
+    assert steps.drift[UAV] == pytest.approx(2.0 * rate, abs=0.025)

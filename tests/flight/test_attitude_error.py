@@ -90,6 +90,17 @@ def test_vehicle_whose_attitude_has_stepped_without_rates_does_not_take_off_from
     assert found.vehicles == (2,) and "vehicle 3 reports an attitude 0.14 rad off that by its rates" in found.reason
 
 
+def test_drift_of_an_attitude_ends_the_spool_up_though_the_vehicle_turns_against_it():
+    preflight = Preflight(SimpleNamespace(links=[SimpleNamespace(system_id=i + 1) for i in range(4)]))
+    system = SimpleNamespace(preflight=preflight, team=preflight._team, settings=SystemConfig().flight.failsafe)
+    preflight.attitude_drifts[1] = 0.04, 0.02
+    assert attitude_misaligned(system, Moment(Phase.SPOOL_UP, 1.0, 1.0)) is None
+    preflight.attitude_drifts[1] = 0.05, 0.02
+    found = attitude_misaligned(system, Moment(Phase.SPOOL_UP, 1.0, 1.0))
+    assert found.vehicles == (1,) and "0.05 rad off that by its rates" in found.reason
+    assert attitude_misaligned(system, Moment(Phase.CLIMB, 1.0, 1.0)) is None
+
+
 @pytest.mark.parametrize(("error", "clear"), [(0.0, True), (0.06, True), (0.2, False)])
 def test_wind_and_small_errors_are_no_failsafe_nor_is_anything_on_the_ground(error, clear):
     assert trigger(aside(error), clear) is None

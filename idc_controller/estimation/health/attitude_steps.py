@@ -83,6 +83,8 @@ class AttitudeSteps:
         self._candidates: dict[int, _Candidate] = {}
         self.total = np.zeros((parameters.number_of_uavs, 2))
         """Sum of all steps of each UAV (N, 2) (rad), those in telemetry alone, too."""
+        self.drift = np.zeros((parameters.number_of_uavs, 2))
+        """What each UAV's attitude has turned lately without rates (N, 2) (rad)."""
 
     def add(self, measurement: Measurement) -> None:
         """Take a measurement; only attitudes of UAVs with their rates are used."""
@@ -107,6 +109,7 @@ class AttitudeSteps:
             return
         interval = sample.time - last.time
         jump = sample.n - last.n - 0.5 * interval * (sample.n_dot + last.n_dot)
+        self.drift[uav] += jump - interval / self._settings.drift_memory * self.drift[uav]
         stepped = self._is_step(uav, jump, interval)
         if candidate is not None:
             self._follow(candidate, sample, jump, stepped)
