@@ -83,7 +83,7 @@ class AutonomousLanding(CommandSequence):
         if self.descent_pending and elapsed >= self._team.land_delay:
             self.descent_pending = False
             _enter(self._team, TeamState.HOLD.next)
-        if self._team.reachable_are_disarmed(now, s.telemetry_timeout):
+        if self._team.reachable_are_disarmed(now, s.data_link_timeout):
             self.done = True
         elif elapsed > s.landing_timeout:
             self.problem = f"not every vehicle has landed after {s.landing_timeout:g} s"

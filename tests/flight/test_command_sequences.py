@@ -41,7 +41,8 @@ def test_team_holds_then_descends_once_after_the_delay(team):
         assert (len(team.commands), landing.descent_pending) == (commands, commands == 1)
     assert team.commands == [LOITER, LAND]
     assert not landing.done and landing.problem == ""
-    assert team.asked[-1] == (127.0, DEFAULTS.failsafe.telemetry_timeout)
+    # One that is silent in a burst of losses alone has not gone.
+    assert team.asked[-1] == (127.0, DEFAULTS.failsafe.data_link_timeout)
 
 
 def test_landing_is_done_when_the_reachable_vehicles_are_disarmed(team):
