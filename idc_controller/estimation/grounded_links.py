@@ -7,8 +7,8 @@ The ground holds the payload, so the model of flight does not apply: each UAV is
 with the link's tilt s and the thrust direction n as in :mod:`idc_controller.model.linear`, the thrust f, the drag w of
 the wind, and b what the thrust is off the attitude: by an attitude that is wrong on board, and by what else of its own
 pulls the UAV aside. One Kalman filter a UAV takes its positions and attitudes, about the payload as its unit reports
-it. A UAV without a position goes on by its attitudes and set-points, by the payload's motion, and by its own part of
-the b that was found before; the wind's part is that of the others.
+it, without those that contradict each other. A UAV without a position goes on by its attitudes and set-points, by the
+payload's motion, and by its own part of the b that was found before; the wind's part is that of the others.
 """
 
 import math
@@ -19,11 +19,12 @@ from typing import NamedTuple
 import numpy as np
 
 from idc_controller.arrays import Array, Mask
+from idc_controller.estimation.grounded_payload import GroundedPayload
 from idc_controller.estimation.health.attitude_steps import AttitudeStep
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise, Position
 from idc_controller.estimation.settings import GroundedLinksSettings
 from idc_controller.parameters import SystemParameters
-from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
+from idc_controller.rotations import rotation_from_quaternion
 
 S, S_DOT, OFF, N, N_DOT, N_ACC = range(6)
 """Rows of a state: s, s', b, n, n', n''."""
@@ -59,41 +60,26 @@ class _Command(NamedTuple):
     thrusts: Array
 
 
-class _Payload:
-    """The payload on the ground, by its unit's telemetry: it stands, or slides."""
+class _Consistency:
+    """Whether positions of a UAV follow from its velocities: where they do not, one of the two is wrong."""
 
-    def __init__(self, time: float, x: Array, arm: float, settings: GroundedLinksSettings) -> None:
-        """``x``: position, velocity, Euler angles and body rates (12,) at ``time`` (s); ``arm`` of the feet (m)."""
-        self._time, self._settings = time, settings
-        self._speed_max, self._rate_max = settings.payload_speed_max, settings.payload_speed_max / arm
-        self._position, self.velocity = x[:3].copy(), x[3:6].copy()
-        self._velocity = np.clip(self.velocity, -self._speed_max, self._speed_max)
-        self._rates = np.clip(x[9:12], -self._rate_max, self._rate_max)
-        self._turn = rotation_from_quaternion(quaternion_from_euler(*x[6:9]))
+    def __init__(self, limit: float, settings: GroundedLinksSettings) -> None:
+        """``limit`` (m) of the difference of two positions that is none of their noise."""
+        self._limit, self._settings = limit, settings
+        self._last: Position | None = None
+        self._off = np.zeros(2)
+        """Way of the positions less that of the velocities, as lately summed up (2,) (m)."""
 
-    def add(self, measurement: Measurement) -> None:
-        """Take a measurement of its unit."""
-        s = self._settings
-        if isinstance(measurement, Attitude):
-            if measurement.has_pose and measurement.has_motion:
-                self._turn = rotation_from_quaternion(measurement.pose)
-                self._rates = np.clip(measurement.motion, -self._rate_max, self._rate_max)
-            return
-        if measurement.has_motion:
-            self.velocity = measurement.motion
-            self._velocity = np.clip(measurement.motion, -self._speed_max, self._speed_max)
-        if measurement.has_pose and measurement.time > self._time:
-            predicted = self._position + (measurement.time - self._time) * self._velocity
-            off = np.clip(measurement.pose - predicted, -s.payload_step_max, s.payload_step_max)
-            self._time, self._position = measurement.time, predicted + s.payload_share * off
-
-    def positions(self, places: Array) -> Array:
-        """Return the positions (K, 3) (m) of ``places`` (K, 3) in its frame."""
-        return np.asarray(self._position + places @ self._turn.T)
-
-    def velocities(self, places: Array) -> Array:
-        """Return the velocities (K, 3) (m/s) of ``places`` (K, 3) in its frame."""
-        return np.asarray(self._velocity + np.cross(self._rates, places) @ self._turn.T)
+    def holds(self, sample: Position) -> bool:
+        """Take a ``sample``; return whether its position and its velocity may be used."""
+        if not (sample.has_pose and sample.has_motion):
+            return True
+        last, self._last, s = self._last, sample, self._settings
+        interval = math.inf if last is None else sample.time - last.time
+        if last is not None and interval < s.position_gap:
+            moved = sample.pose - last.pose - 0.5 * interval * (sample.motion + last.motion)
+            self._off = (1.0 - interval / s.reckoning_memory) * self._off + moved[:2]
+        return float(np.linalg.norm(self._off)) < self._limit
 
 
 class GroundedLinks:
@@ -128,7 +114,9 @@ class GroundedLinks:
         self._offsets = np.zeros((number, 2))
         """What each UAV had beside it in the air (N, 2), and what its attitude has stepped since."""
         self._arm = float(np.linalg.norm(p.p, axis=1).max())
-        self._payload = _Payload(0.0, np.zeros(12), self._arm, s)
+        self._payload = GroundedPayload(0.0, np.zeros(12), self._arm, s)
+        self._contradiction = s.innovation_max * math.sqrt(2.0 * float(self._variance[0]))
+        self._consistency = [_Consistency(self._contradiction, s) for _ in range(number)]
         self._commands: deque[_Command] = deque()
 
     def start(
@@ -144,7 +132,8 @@ class GroundedLinks:
             drag: of the wind on each of them (2,) (N).
             unlocated: UAVs (from 0) without a position.
         """
-        self._payload = _Payload(time, payload, self._arm, self._settings)
+        self._payload = GroundedPayload(time, payload, self._arm, self._settings)
+        self._consistency = [_Consistency(self._contradiction, self._settings) for _ in self._consistency]
         self._times[:] = time
         self._located[:] = time
         self._located[[*unlocated]] = -math.inf
@@ -199,6 +188,8 @@ class GroundedLinks:
             if measurement.has_pose:
                 direction = -rotation_from_quaternion(measurement.pose)[:2, 2]
                 self._update(i, N, direction, self._direction_variance)
+            return
+        if not self._consistency[i].holds(measurement):
             return
         position, velocity = self._payload.positions(p.p[i]), self._payload.velocities(p.p[i])
         if measurement.has_pose or measurement.has_motion:

@@ -214,6 +214,7 @@ class GroundedLinksSettings(SettingsTable):
     error_time_constant: float = 0.5  # s; of what the UAVs have in common of these errors
     error_min: float = 0.04  # rad; three standard deviations of what is found of a UAV's own beside that of the air
     position_gap: float = 0.2  # s; without a position, after which a UAV has that, too
+    reckoning_memory: float = 10.0  # s; over which positions are compared with the way by the velocities
     uav_jerk: float = 20.0  # 1/s3/sqrt(s); of thrust directions: some set-points are lost
     position_noise_min: float = 0.01  # m; least standard deviations of the measurements: the model's own errors
     velocity_noise_min: float = 0.02  # m/s

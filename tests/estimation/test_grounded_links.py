@@ -169,6 +169,25 @@ def test_impossible_motion_of_the_payload_hardly_moves_the_links():
         assert np.abs(links.at(0.0).x[S_DOT]).max() < 0.5 / P.l.min() + 1e-9
 
 
+@pytest.mark.parametrize("wrong", ["position", "velocity", ""])
+def test_link_whose_uavs_position_and_velocity_contradict_each_other_goes_on_without_both(wrong):
+    links, rng = GroundedLinks(P), np.random.default_rng(2)
+    links.start(0.0, REST, np.zeros((6, 4, 2)), 0.6 * P.hover_thrust, np.zeros(2))
+    drift = np.array([0.3, 0.0, 0.0])
+    for k in range(1, 50):
+        time, above = k * TELEMETRY, np.array([0.0, 0.0, P.l[0]])
+        links.command(time, np.zeros((4, 2)), 0.6 * P.hover_thrust)
+        for i in range(4):
+            off = i == 2 and bool(wrong)
+            place = P.p[i] - above + rng.normal(0.0, 0.02, 3) + drift * time * (off and wrong == "position")
+            velocity = rng.normal(0.0, 0.02, 3) + drift * (off and wrong == "velocity")
+            links.add(Attitude(time, i, quaternion_from_euler(0.0, 0.0, 0.0), np.zeros(3)))
+            links.add(Position(time, i, place, velocity))
+    states = links.at(50 * TELEMETRY)
+    assert states.located.tolist() == [True, True, not wrong, True]
+    assert np.abs(states.x[S]).max() < 0.12
+
+
 def test_uav_whose_positions_have_stopped_in_the_air_has_none():
     links = GroundedLinks(P)
     for uav in range(4):
