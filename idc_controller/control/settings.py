@@ -126,7 +126,7 @@ class ControllerSettings(SettingsTable):
     load_time_constant: float = 0.5
     # least and largest weight of the payload that is learnt, over that of the system file
     mass_share: tuple[float, float] = (0.05, 2.0)
-    # largest level disturbance force that the reference leans against, over the payload's weight
+    # largest level force that the reference leans against: on the payload over its weight, on a UAV over its thrust
     force_limit: float = 0.4
     # the same where wind explains the force: of drag, and of drag and disturbance force together
     drag_limit: float = 0.65

@@ -263,9 +263,9 @@ def test_load_follows_disturbance_force_and_mass_of_the_payload_within_limits():
     lost = learnt(long, settings, force=np.array([30.0, 0.0, -2.0 * carried]), mass_excess=-0.1)
     assert lost.mass * P.g + lost.force[2] == pytest.approx(least * carried, rel=1e-2)
     assert lost.force[0] == pytest.approx(settings.force_limit * carried, rel=1e-2)
-    weight = float(P.m.min()) * P.g
+    hover = float(P.hover_thrust.min())
     pulled = learnt(long, settings, uav_force=np.tile([0.0, 50.0, 0.0], (N, 1)) * np.eye(N)[0][:, None]).uav_force
-    assert pulled[0] == pytest.approx([0.0, settings.force_limit * weight, 0.0], rel=1e-2)
+    assert pulled[0] == pytest.approx([0.0, settings.force_limit * hover, 0.0], rel=1e-2)
     assert pulled[1:] == pytest.approx(np.zeros((N - 1, 3)), abs=1e-6)
 
 
