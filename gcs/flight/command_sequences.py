@@ -72,21 +72,28 @@ class AutonomousLanding(CommandSequence):
     """The states that follow OFFBOARD, each commanded when a vehicle enters it that receives nothing."""
 
     descent_pending = True
+    _told = False
+    """True once every vehicle has answered the command to descend, or was sent it often enough."""
 
     def __init__(self, team: Team, time: float, settings: FlightSettings = DEFAULTS) -> None:
         super().__init__(team, time, settings)
         _enter(team, TeamState.OFFBOARD.next)
 
     def step(self, time: float, now: float) -> None:
-        """See :class:`CommandSequence`."""
-        s, elapsed = self._settings.failsafe, time - self._since
-        if self.descent_pending and elapsed >= self._team.land_delay:
-            self.descent_pending = False
-            _enter(self._team, TeamState.HOLD.next)
-        if self._team.reachable_are_disarmed(now, s.data_link_timeout):
+        """See :class:`CommandSequence`. One that is not heard may hear: it is told to descend before this is done."""
+        s, team, elapsed = self._settings.failsafe, self._team, time - self._since
+        landed = team.reachable_are_disarmed(now, s.data_link_timeout)
+        self._told |= not (self.descent_pending or team.waits)
+        if landed and self._told:
             self.done = True
         elif elapsed > s.landing_timeout:
             self.problem = f"not every vehicle has landed after {s.landing_timeout:g} s"
+        elif self.descent_pending:
+            if landed or elapsed >= team.land_delay:
+                self.descent_pending = False
+                _enter(team, TeamState.HOLD.next)
+        elif not team.waits and team.unanswered:
+            _enter(team, TeamState.HOLD.next)
 
 
 def _enter(team: Team, state: TeamState) -> int:

@@ -31,6 +31,16 @@ class Team:
         return all(command.state is CommandState.ACCEPTED for _, command in self._commands)
 
     @property
+    def waits(self) -> bool:
+        """True while an answer to the last command is awaited."""
+        return any(command.state is CommandState.PENDING for _, command in self._commands)
+
+    @property
+    def unanswered(self) -> bool:
+        """True if a vehicle has not answered the last command, however often it was sent."""
+        return any(command.state is CommandState.UNANSWERED for _, command in self._commands)
+
+    @property
     def refusal(self) -> str | None:
         """The vehicle that refused the last command or did not answer it, with its result; None: none."""
         for link, command in self._commands:

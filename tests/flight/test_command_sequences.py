@@ -14,7 +14,7 @@ LOITER, LAND = ((1.0, px4.MainMode.AUTO, mode) for mode in (px4.AutoMode.LOITER,
 class Team:
     """A team that keeps its commands; its vehicles that are reached are disarmed once it is ``landed``."""
 
-    land_delay, landed = 15.0, False
+    land_delay, landed, waits, unanswered = 15.0, False, False, False
 
     def __init__(self):
         self.commands, self.asked = [], []
@@ -47,9 +47,38 @@ def test_team_holds_then_descends_once_after_the_delay(team):
 
 def test_landing_is_done_when_the_reachable_vehicles_are_disarmed(team):
     landing = AutonomousLanding(team, 100.0)
+    landing.step(115.0, 0.0)
     team.landed = True
     landing.step(100.0 + TIMEOUT + 1.0, 0.0)
     assert landing.done and landing.problem == ""
+
+
+def test_landing_commands_the_descent_before_it_is_done(team):
+    """A vehicle without telemetry may hold still when those that are heard are down."""
+    landing = AutonomousLanding(team, 100.0)
+    team.landed = True
+    landing.step(102.0, 0.0)
+    assert team.commands == [LOITER, LAND] and not landing.done
+    team.waits = True
+    landing.step(102.1, 0.0)
+    assert not landing.done
+    team.waits = False
+    landing.step(103.0, 0.0)
+    assert landing.done and len(team.commands) == 2
+
+
+def test_descent_is_commanded_again_where_a_vehicle_has_not_answered(team):
+    landing = AutonomousLanding(team, 100.0)
+    for time, waits, unanswered, commands in (
+        (115.0, False, False, 2), (115.1, True, False, 2), (120.0, False, True, 3), (120.1, True, False, 3),
+        (121.0, False, False, 3),
+    ):  # fmt: skip
+        team.waits, team.unanswered = waits, unanswered
+        landing.step(time, 0.0)
+        assert len(team.commands) == commands
+    team.landed, team.waits = True, True
+    landing.step(130.0, 0.0)
+    assert landing.done
 
 
 @pytest.mark.parametrize(("late", "failed"), [(-0.1, False), (0.1, True)])

@@ -54,6 +54,7 @@ class ObedientTeam:
     parameters = PARAMETERS
 
     answered, refusal, links, land_delay, hold = True, None, (), 5.0, Hold()
+    waits = unanswered = False
 
     def __init__(self):
         self.armed, self.time, self.lands_at, self.commands = False, 0.0, np.inf, []

@@ -78,6 +78,15 @@ def test_vehicle_that_receives_nothing_enters_each_next_state_by_its_timer_until
     assert vehicle.state is TeamState.DISARMED and vehicle.pilot.mode == TeamState.DISARMED.mode
 
 
+def test_vehicle_that_is_armed_on_the_ground_in_hold_is_disarmed_without_a_ground():
+    vehicle = Silent(TeamState.ARMED)
+    vehicle.pilot.enter_mode(px4.MODE_HOLD, vehicle.now)
+    assert vehicle.state is TeamState.ARMED
+    ((state, after),) = vehicle.states()
+    assert state is TeamState.DISARMED
+    assert after == pytest.approx(vehicle.parameters[px4.PARAM_LINK_LOSS], abs=2.5 * STEP)
+
+
 def test_each_failsafe_of_a_vehicle_with_a_team_ends_a_state_of_the_table():
     assert {failsafe.state for failsafe in FAILSAFES} == {*TeamState} - {TeamState.LAND}
     assert all(failsafe.parameter == failsafe.state.timer for failsafe in FAILSAFES if failsafe.name == "offboard_loss")

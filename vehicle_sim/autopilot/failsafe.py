@@ -115,6 +115,9 @@ FAILSAFES = (
     _end_of(TeamState.HOLD, "data_link_loss",
         f"HOLD in flight, no message of the ground in control for that time, and `{px4.PARAM_LINK_LOSS_ACTION}` is "
         f"{px4.LINK_LOSS_LAND}", px4.PARAM_LINK_LOSS, _data_link_lost, "No ground station: descending"),
+    _end_of(TeamState.ARMED, "data_link_loss_on_ground",
+        "HOLD, armed on the ground, no message of the ground in control for that time, as in flight",
+        px4.PARAM_LINK_LOSS, _data_link_lost, "No ground station on the ground: disarmed"),
 )
 # fmt: on
 

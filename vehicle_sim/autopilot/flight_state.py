@@ -12,7 +12,7 @@ from gcs.mavlink.team_failsafe import TeamState
 from idc_controller.rotations_float import Vector, euler_of
 from vehicle_sim.autopilot.actuation import Actuation
 from vehicle_sim.autopilot.airframe import Airframe
-from vehicle_sim.autopilot.hold_control import HoldController, HoldPlan, on_bezier_curve
+from vehicle_sim.autopilot.hold_control import HoldController, HoldPlan, on_bezier_curve, way
 from vehicle_sim.autopilot.land_detector import LandDetector
 from vehicle_sim.autopilot.navigation import Navigation
 from vehicle_sim.autopilot.setpoint_stream import SetpointStream
@@ -162,7 +162,8 @@ class FlightState:
         if sent is not None and sent.hover_force is not None:  # those of the whole team
             north, east, down = sent.hover_force
             hover, lean = min(max(-down, weight), self.airframe.rotors.thrust_max), (-north / down, -east / down)
-        self.hold = HoldController(plan, hover, lean, self.supported_thrust, self.airframe.g, settings)
+        offset = way(plan.at(now).position, measured.position) if self.navigation.is_reckoned else None
+        self.hold = HoldController(plan, hover, lean, self.supported_thrust, self.airframe.g, settings, offset)
 
     def begin_descent(self, now: float) -> None:
         """Descend from where it is, or when the other vehicles do, where that is known; on the ground stop."""
@@ -188,10 +189,13 @@ class FlightState:
         self.land.start()
 
     def begins_on_path(self, plan: StopPlan, now: float) -> bool:
-        """Return True if a stop plan begins where the vehicle will be then, or leads to where it is."""
+        """Return True if a stop plan begins where the vehicle will be then, or leads to where it is.
+
+        By dead reckoning it does not know where it is: the message names the vehicle that the plan is for.
+        """
         measured = self.navigation.estimate
-        if measured is None:
-            return False
+        if measured is None or self.navigation.is_reckoned:
+            return measured is not None
         time = max(now, plan.start)
         x, y, z = (r + (time - now) * v for r, v in zip(measured.position, measured.velocity, strict=True))
         share = min((time - plan.start) / plan.duration, 1.0)
@@ -213,5 +217,7 @@ class FlightState:
         if sent is None:
             return None
         plan = HoldPlan(sent.start, sent.duration, sent.control_points, sent.yaw, *descent)
+        if self.navigation.is_reckoned:
+            return plan
         near = self.settings.failsafe.stop_plan_distance
         return plan if math.dist(plan.at(now).position, measured.position) <= near else None

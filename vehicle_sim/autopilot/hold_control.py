@@ -7,7 +7,7 @@ without one plans from its state at the moment of the loss.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from operator import mul
 from typing import Any, NamedTuple, Self
@@ -65,6 +65,10 @@ class HoldPlan:
         quarter = (x + duration * v_x / 4, y + duration * v_y / 4, z)
         end = (x + duration * v_x / 2, y + duration * v_y / 2, z)
         return cls(start, duration, (position, quarter, end, end, end), yaw, *descent)
+
+    def moved(self, offset: Vector) -> Self:
+        """Return the plan, all of it moved by an ``offset`` (m)."""
+        return replace(self, control_points=tuple(moved(point, offset) for point in self.control_points))
 
     def at(self, now: float) -> PlannedState:
         """The planned state at a time (s)."""
@@ -134,6 +138,18 @@ def on_bezier_curve(axes: Sequence[Sequence[float]], share: float) -> list[float
     return [sum(map(mul, weights, points)) for points in axes]
 
 
+def way(start: Vector, end: Vector) -> Vector:
+    """Return the way (3,) from one place to another."""
+    (x, y, z), (u, v, w) = start, end
+    return u - x, v - y, w - z
+
+
+def moved(place: Vector, offset: Vector) -> Vector:
+    """Return a ``place`` moved by an ``offset``."""
+    (x, y, z), (u, v, w) = place, offset
+    return x + u, y + v, z + w
+
+
 class HoldController:
     """Follows a plan: from what is measured to an attitude and a thrust.
 
@@ -143,11 +159,12 @@ class HoldController:
 
     def __init__(
         self, plan: HoldPlan, hover_thrust: float, lean: tuple[float, float], thrust_min: float, g: float,
-        settings: HoldSettings,
+        settings: HoldSettings, offset: Vector | None = None,
     ) -> None:  # fmt: skip
         """``hover_thrust`` and the least thrust while in the air in N, ``g`` in m/s2.
 
-        ``lean``: level part of the thrust that holds against the wind, of the vertical one, north and east.
+        ``lean``: level part of the thrust that holds against the wind, of the vertical one, north and east. ``offset``:
+        position by dead reckoning less that of the plan (m); None: the position is measured.
         """
         self.plan = plan
         self.hover_thrust = hover_thrust
@@ -156,6 +173,7 @@ class HoldController:
         self._g = g
         self._settings = settings
         self._integral_x, self._integral_y = lean[0] * g, lean[1] * g
+        self._offset = offset
         self._drift = [0.0] * 4
         """Low-passed errors of position (m) and velocity (m/s), north and east, by dead reckoning."""
         self._last_time = plan.start
@@ -170,7 +188,8 @@ class HoldController:
         """Attitude set-point (unit quaternion body to world) and thrust (N).
 
         ``reckoned``: position and velocity go on by dead reckoning. They drift, and otherwise on each vehicle: what
-        lasts of their errors is not followed, and links hang as they are pulled.
+        lasts of their errors is not followed, and links hang as they are pulled. Once the position is measured, a plan
+        of all is followed where it is, and one of its own goes on where the vehicle is.
 
         ``supported``: the payload stands on the ground. The vehicle then hands it over, where it is. The integral that
         held the payload against the wind goes with the payload's weight: the link, which leans by both, stays as it is.
@@ -184,7 +203,7 @@ class HoldController:
             thrust_max = carried = self._thrust_min + share * (thrust - self._thrust_min)
         else:
             self._supported = None
-            position, velocity, acceleration = self.plan.at(now)
+            position, velocity, acceleration = self._planned(measured.position, now, reckoned)
             carried, thrust_max = self.hover_thrust, math.inf
         v_x, v_y, v_z = measured.velocity
         error_x, error_y = position[0] - x, position[1] - y
@@ -224,3 +243,15 @@ class HoldController:
         # Over a payload that stands the thrust is bounded, whatever the altitude says, which may drift.
         self._thrust = min(max(thrust, self._thrust_min), thrust_max)
         return attitude_of_force(a_x, a_y, -up, self.plan.yaw), self._thrust
+
+    def _planned(self, measured: Vector, now: float, reckoned: bool) -> PlannedState:
+        """Return the planned state at a time (s) of a vehicle at a ``measured`` position (m)."""
+        planned = self.plan.at(now)
+        if self._offset is None:
+            return planned
+        if reckoned:
+            return planned._replace(position=moved(planned.position, self._offset))
+        self._offset = None
+        if not self.plan.is_common:
+            self.plan = self.plan.moved(way(planned.position, measured))
+        return self.plan.at(now)
