@@ -124,3 +124,19 @@ def test_ground_is_killed_on_the_figure_eight_behind_a_router_that_broadcasts(tm
         assert flight.flight.phase is Phase.FLY and not flight.flight.reason
         assert flight.run_without_ground()
         check_set_down(flight.summary(), truth_of(tmp_path / "run"))
+
+
+@pytest.mark.parametrize("reckons", [False, True])
+def test_ground_is_lost_as_the_payload_sinks_from_two_metres(tmp_path, reckons):
+    """All descend together, and no faster for it; a vehicle that has gone by dead reckoning for long, too."""
+    system_file(tmp_path)
+    faults = ['kind = "partition"\nstart_phase = "land"\nstart_offset = 1.4']
+    faults += ['kind = "position_lost"\nstart = 3.0\nvehicles = [2]'] * reckons
+    (tmp_path / "leg.toml").write_text(LEG.format(speed=1.5) + "".join(f"\n[[fault]]\n{fault}\n" for fault in faults))
+    with InProcessFlight(read_mission(tmp_path / "leg.toml"), tmp_path / "run") as flight:
+        flight.fly()
+        assert flight.run_without_ground()
+        summary = flight.summary()
+    check_set_down(summary, truth_of(tmp_path / "run"))
+    assert summary["landing"]["speed_mps"] < 0.7
+    assert max(summary["payload_tilt_max_deg"][axis] for axis in ("roll", "pitch")) < 5.0
