@@ -76,9 +76,9 @@ class HoldSettings(SettingsTable):
     against another.
     """
 
-    horizontal_kp: float = 0.8  # 1/s2; horizontal position gain
-    horizontal_kd: float = 1.5  # 1/s; horizontal velocity gain
-    horizontal_ki: float = 0.1  # 1/s3; horizontal integral gain
+    horizontal_kp: float = 1.6  # 1/s2; horizontal position gain
+    horizontal_kd: float = 2.2  # 1/s; horizontal velocity gain
+    horizontal_ki: float = 0.3  # 1/s3; horizontal integral gain: an attitude may drift
     integral_max: float = 2.5  # m/s2; largest integral part
     # s; longer than a link takes to swing back, and so short that the drift of a reckoned velocity (by 0.2 deg of
     # attitude error) stays at 0.1 m/s

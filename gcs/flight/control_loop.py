@@ -184,7 +184,7 @@ class ControlLoop:
         self.compute_times.lap(Part.STOP_PLAN)
 
     def stand(self, record: StepRecord, effective: float, links: LinkStates, setpoints: Setpoints) -> None:
-        """Take over ``setpoints`` over a payload that has touched down, which act at ``effective`` (s).
+        """Take over ``setpoints`` over a payload that stands, which act at ``effective`` (s).
 
         Vehicles without others descend at once, with the thrust that they have: what they lifted would fall again.
         """

@@ -37,12 +37,15 @@ class FailsafeState:
         """True if the user has interrupted the flight."""
         return not self.raised.isdisjoint({Failsafe.INTERRUPTED, Failsafe.INTERRUPTED_TWICE})
 
-    def evaluate(self, check: Check, moment: Moment) -> tuple[Failsafe, Trigger] | None:
-        """Return what counts among the conditions of ``check`` that call for more than is under way; None: none."""
+    def evaluate(self, check: Check, moment: Moment, phase: Phase | None = None) -> tuple[Failsafe, Trigger] | None:
+        """Return what counts among the conditions of ``check`` that call for more than is under way; None: none.
+
+        ``phase`` by which it is reacted; None: that of the moment.
+        """
         system, present = self.system, self.reaction
         held = [
             (failsafe, trigger)
-            for failsafe, condition, reaction in _ADMITTED[check, moment.phase]
+            for failsafe, condition, reaction in _ADMITTED[check, phase or moment.phase]
             if reaction > present and (trigger := condition(system, moment)) is not None
         ]
         if not held:

@@ -122,11 +122,19 @@ class Flight:
 
     # Failsafes
 
+    @property
+    def _reacting_phase(self) -> Phase:
+        """Phase by which it is reacted: vehicles above their cradles are as those whose rotors spool down.
+
+        One that is lost then holds its place by its thrust, as it takes itself to fly.
+        """
+        return Phase.SPOOL_DOWN if self.phase is Phase.SPOOL_UP and not self._in_cradles else self.phase
+
     def raise_failsafe(self, time: float, failsafe: Failsafe, trigger: Trigger) -> None:
         """React to a failsafe, unless a reaction at least as severe is under way."""
         if self.ended and failsafe.reaction is not Reaction.END_CONTROL:
             return
-        reaction = self.failsafes.raise_failsafe(time, self.phase, failsafe, trigger)
+        reaction = self.failsafes.raise_failsafe(time, self._reacting_phase, failsafe, trigger)
         if reaction in (Reaction.REFUSE, Reaction.END_CONTROL):
             self.phase = Phase.ENDED
         elif reaction is Reaction.DISARM:
@@ -153,7 +161,8 @@ class Flight:
 
     def _evaluate(self, check: Check, time: float, now: float, estimate: Estimate | None = None) -> bool:
         descent = self.flown.descent(time) if estimate is not None and self.phase is Phase.LAND else None
-        raised = self.failsafes.evaluate(check, Moment(self.phase, time, now, self._sequence, estimate, descent))
+        moment = Moment(self.phase, time, now, self._sequence, estimate, descent)
+        raised = self.failsafes.evaluate(check, moment, self._reacting_phase)
         if raised is not None:
             self.raise_failsafe(time, *raised)
         return raised is not None
@@ -330,6 +339,8 @@ class Flight:
         payload = self.payload_control
         if payload.has_lifted_off(time) and self.phase is Phase.SPOOL_UP:
             self._begin_climb(time)
+            if self.reason:
+                self.flown.brake_and_land(time)
         estimate = payload.estimate(time, effective)
         if self.phase in IN_AIR and self._evaluate(Check.ESTIMATE, time, now, estimate):
             return None, None
@@ -345,7 +356,9 @@ class Flight:
     def _advance(self, time: float, estimate: Estimate, thrusts: Array) -> None:
         """Go on to the next phase where this one is over."""
         if self.phase is Phase.SPOOL_UP:
-            if self.payload_control.is_spooled_up(time):
+            if self.reason:
+                self._spool_down(time, estimate)
+            elif self.payload_control.is_spooled_up(time):
                 self._begin_climb(time)
         elif self.phase is Phase.SPOOL_DOWN:
             if not thrusts.any():
@@ -357,6 +370,9 @@ class Flight:
 
     def _touch_down(self, time: float, estimate: Estimate) -> None:
         self.flown.touch_down(time)
-        self.payload_control.touch_down(time, estimate)
         self.landings += 1
+        self._spool_down(time, estimate)
+
+    def _spool_down(self, time: float, estimate: Estimate) -> None:
+        self.payload_control.stand(time, estimate)
         self.phase = Phase.SPOOL_DOWN

@@ -130,7 +130,7 @@ class PayloadControl:
         setpoints = Setpoints(decision.directions, thrusts)
         # Those that would land by dead reckoning hold first: it is their thrust that keeps links upright.
         may_land = len(loop.links.unlocated) < 2
-        if links is not None and self._touchdown is not None and may_land:
+        if links is not None and may_land and not self.in_cradles(time):
             loop.stand(record, effective, links, setpoints)
         if self._spool_up is not None:
             self._spool_up.sent(effective, setpoints, leaves, in_air=in_air)
@@ -163,8 +163,9 @@ class PayloadControl:
 
     # Landing
 
-    def touch_down(self, time: float, estimate: Estimate) -> None:
-        """Rest where the payload is, and spool down."""
+    def stand(self, time: float, estimate: Estimate) -> None:
+        """Rest where the payload stands, and spool down."""
+        self._spool_up = None
         loop, layout = self._loop, self._loop.controller.layout
         self._touchdown = Touchdown(
             RestTrajectory(estimate.x[layout.r_0], time),

@@ -65,9 +65,22 @@ def test_interrupt_between_two_flights_ends_the_mission_where_it_stands():
 @pytest.mark.parametrize("phase", [Phase.ARM, Phase.SPOOL_UP])
 def test_vehicles_still_on_the_ground_are_disarmed(phase):
     flight = Watched(phase)
+    flight.payload_control.in_cradles = lambda time: True
     flight.fails(Failsafe.OFFBOARD_LEFT)
     assert flight.phase is Phase.DISARM
     assert [command[:2] for command in flight.commands] == [(ARM, 0.0)]
+
+
+def test_vehicles_above_their_cradles_hold_with_one_that_is_lost_and_spool_down_for_less():
+    flight = Watched(Phase.SPOOL_UP)
+    stood = []
+    flight.payload_control.stand = lambda time, estimate: stood.append(time)
+    flight.fails(Failsafe.ATTITUDE_MISALIGNED)
+    assert (flight.phase, flight.commands) == (Phase.SPOOL_UP, [])
+    flight._advance(5.0, None, np.ones(4))
+    assert (flight.phase, stood) == (Phase.SPOOL_DOWN, [5.0])
+    flight.fails(Failsafe.OFFBOARD_LEFT)
+    assert flight.phase is Phase.AUTONOMOUS_LANDING
 
 
 @pytest.mark.parametrize("phase", [Phase.CLIMB, Phase.FLY])
@@ -117,7 +130,8 @@ def test_two_failsafes_at_one_step_lead_to_the_same_reaction_and_state_in_either
                 flight.fails(failsafe)
             outcomes.append((flight.failsafes.reaction, flight.phase, flight.commands))
         assert outcomes[0] == outcomes[1], pair
-        assert outcomes[0][0] is phase.state.reaction(max(failsafe.reaction for failsafe in pair))
+        reacting = Watched(phase)._reacting_phase.state
+        assert outcomes[0][0] is reacting.reaction(max(failsafe.reaction for failsafe in pair))
 
 
 def test_failsafe_after_the_end_is_left_alone():
@@ -129,6 +143,6 @@ def test_failsafe_after_the_end_is_left_alone():
 def test_links_are_checked_while_the_rotors_carry_anything():
     for phase in Phase:
         flight, asked = Watched(phase), []
-        flight.failsafes.evaluate = lambda check, moment, asked=asked: asked.append(moment)
+        flight.failsafes.evaluate = lambda check, moment, phase, asked=asked: asked.append(moment)
         assert not flight.check_links(1.0, 2.0)
         assert bool(asked) == (phase in CONTROLLED)

@@ -166,11 +166,14 @@ def test_each_vehicle_is_sent_one_setpoint_and_one_stop_plan_a_step(flown):
     while (message := log.recv_match(type=["SET_ATTITUDE_TARGET", "TUNNEL"])) is not None:
         sent[message.get_type()] += 1
     log.close()
-    # From arming to disarming, and from the first step in the air on.
-    period = 1.0 / flown.mission.system.rates.control
+    # From arming to disarming, and from when the thrust lifts the UAVs from their cradles.
+    config = flown.mission.system
+    parameters, period = config.parameters(), 1.0 / config.rates.control
+    share = float((parameters.m * parameters.g / parameters.hover_thrust).max())
+    lifted = flown.phases[Phase.SPOOL_UP] + share * config.flight.takeoff_landing.spool_up_time
     steps = {
         "SET_ATTITUDE_TARGET": (flown.phases[Phase.ENDED] - flown.phases[Phase.ARM]) / period,
-        "TUNNEL": (flown.phases[Phase.ENDED] - flown.phases[Phase.CLIMB]) / period,
+        "TUNNEL": (flown.phases[Phase.ENDED] - lifted) / period,
     }
     for kind, number in steps.items():
         assert sent[kind] == pytest.approx(4 * number, rel=0.03), kind
