@@ -59,8 +59,9 @@ commands by the most severe of its reactions, and a vehicle enters by its failsa
 {states()}
 `HOLD` ends at the time in the stop plan, or without a plan the parameter's time after the loss; the ground commands
 `LAND` then. `LAND` ends with the touch-down. Where a state does not allow a reaction, the nearest that it allows is
-made; `END_CONTROL` is allowed in each. In the spool-up the team is in `OFFBOARD` once the thrust has lifted the vehicles
-from their cradles: a vehicle that is lost holds its place by it, and the others with it; for less the rotors spool down.
+made; `END_CONTROL` is allowed in each. In the spool-up the team is in `OFFBOARD` once the thrust has lifted the
+vehicles from their cradles: a vehicle that is lost holds its place by it, and the others with it; for less the rotors
+spool down.
 
 Only `offboard_loss` can end in the state before: a vehicle flies set-points again when two arrive. Where the ground has
 seen that it left them (`offboard_left`), it commands all to land.

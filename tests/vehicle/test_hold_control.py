@@ -152,7 +152,7 @@ def test_vehicle_of_a_standing_payload_stays_where_it_was_then():
         assert command[1] == pytest.approx(LEAST + share * (handed_over - LEAST))
         tilts.append(force_of(command)[:2] / command[1] / share)
     assert np.linalg.norm(tilts[0]) > 0.01
-    np.testing.assert_allclose(tilts, [tilts[0]] * 3, rtol=0.02, atol=1e-9)  # the angle, not its tangent
+    np.testing.assert_allclose(tilts, [tilts[0]] * 3, rtol=0.05, atol=1e-9)  # but for what it lifted above the hover
     end = 2.0 + GAINS.unload_time
     attitude, thrust = controller.command(beside, end, supported=True)
     assert thrust == pytest.approx(LEAST) and attitude[1:3] == pytest.approx((0.0, 0.0))
