@@ -21,7 +21,7 @@ class Autopilot:
 
     def __init__(self):
         self.armed, self.wants_setpoints = False, False
-        self.state = SimpleNamespace(setpoint_loss_time=LOSS)
+        self.state = SimpleNamespace(setpoint_loss_time=LOSS, failsafe=False)
         self.flown, self.entered = [], []
 
     def follow(self, setpoint, now):
@@ -220,3 +220,36 @@ def test_many_streams_of_one_address_leave_room_for_another(owner):
     assert owner.in_control(10.1) == GROUND
     owner.take(setpoint(5000), (STRANGER[0], 200), 10.1)
     assert owner.enter_offboard((STRANGER[0], 200), 10.1) != ACCEPTED
+
+
+@pytest.mark.parametrize("clock", [0.0, 2**32 * 1e-3 - 20.0, -15.0])
+def test_in_a_failsafe_the_queue_of_a_link_that_has_become_slow_is_not_flown(owner, clock):
+    """Whatever clock the stamps are by, wrapping, too."""
+
+    def stamp(time):
+        return round(1e3 * (time + clock)) & 0xFFFFFFFF
+
+    autopilot, sent = None, [20.0 + 0.05 * k for k in range(200)]
+    for time in sent[:20]:
+        owner.take(setpoint(stamp(time)), GROUND, time + 0.01)
+        if autopilot is None:
+            assert owner.enter_offboard(GROUND, time + 0.01) == ACCEPTED
+            autopilot = owner._autopilot
+    autopilot.flown.clear()
+    autopilot.state.failsafe = True
+    for time in sent[20:40]:
+        owner.take(setpoint(stamp(time)), GROUND, time + 2.0)
+    assert not autopilot.flown
+    owner.take(setpoint(stamp(sent[60])), GROUND, sent[60] + 0.02)
+    assert len(autopilot.flown) == 1
+    autopilot.state.failsafe = False
+    owner.take(setpoint(stamp(sent[61])), GROUND, sent[61] + 2.0)
+    assert len(autopilot.flown) == 2
+
+
+def test_in_a_failsafe_a_copy_is_no_other_setpoint(owner):
+    autopilot = controlled(owner)
+    autopilot.state.failsafe = True
+    for number, flown in ((5200, 1), (5200, 1), (5250, 2)):
+        owner.take(setpoint(number), GROUND, 10.2)
+        assert len(autopilot.flown) == flown

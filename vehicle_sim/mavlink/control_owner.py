@@ -14,18 +14,38 @@ _KEPT = 500
 _COPIES = 0.1
 """Time (s) in which copies that are sent at once arrive."""
 _HALF_WRAP = 2**31  # ms
+_CLOCK_DRIFT = 0.01
+"""By how much a sender's clock may run slower than the vehicle's (s/s)."""
 
 
 class _Stream:
     """The last set-point of one sender, and those ``seen``."""
 
-    __slots__ = ("last", "older", "seen", "time")
+    __slots__ = ("_least", "_least_at", "last", "older", "seen", "time")
 
     def __init__(self, setpoint: Setpoint, now: float) -> None:
         self.last = setpoint
         self.time = now
         self.seen = deque((setpoint,), _KEPT)
         self.older: Setpoint | None = None
+        self._least, self._least_at = _since_stamp(setpoint, now), now
+        """Least time (ms) from a stamp to the arrival, and when (s)."""
+
+    def delay(self, setpoint: Setpoint, now: float) -> float:
+        """Return by how much more (s) a set-point is delayed than the one of the sender that came soonest.
+
+        Whatever clock the sender's stamps are by; without stamps none is known to be.
+        """
+        if setpoint.time_boot_ms == 0:
+            return 0.0
+        passed = _since_stamp(setpoint, now)
+        more = (passed - self._least) & 0xFFFFFFFF
+        drift = 1e3 * _CLOCK_DRIFT * (now - self._least_at)
+        was_set_back = 0 < (self.last.time_boot_ms - setpoint.time_boot_ms) & 0xFFFFFFFF < _HALF_WRAP
+        if was_set_back or more >= _HALF_WRAP or more <= drift:
+            self._least, self._least_at = passed, now
+            return 0.0
+        return 1e-3 * (more - drift)
 
     def is_next(self, setpoint: Setpoint, now: float, reordering_max: float) -> bool:
         """Return whether a set-point is to be used: it is newer than all before, or the sender's clock was set back.
@@ -48,6 +68,11 @@ class _Stream:
             self.older = None if is_next else setpoint
         self.seen.append(setpoint)
         return is_next
+
+
+def _since_stamp(setpoint: Setpoint, now: float) -> int:
+    """Return the time (ms) from the stamp of a set-point to its arrival, by two clocks: only changes of it count."""
+    return (round(1e3 * now) - setpoint.time_boot_ms) & 0xFFFFFFFF
 
 
 class ControlOwner:
@@ -88,7 +113,7 @@ class ControlOwner:
 
     def take(self, setpoint: Setpoint, sender: Sender, now: float) -> None:
         """Take a valid set-point, unless another ground is in control. Repeats and overtaken ones are dropped."""
-        stream = self._streams.get(sender)
+        stream, in_time = self._streams.get(sender), True
         if stream is None:
             self._forget_silent(now)
             if not self._has_room(sender):
@@ -97,9 +122,14 @@ class ControlOwner:
         else:
             if not stream.is_next(setpoint, now, 1e3 * self._settings.reordering_max):
                 return
+            is_copy = setpoint == stream.last and setpoint.time_boot_ms != 0
+            in_time = not is_copy and stream.delay(setpoint, now) < self._autopilot.state.setpoint_loss_time
             stream.last = setpoint
             stream.time = now
-        if sender == self._owner and self._autopilot.wants_setpoints:
+        if sender != self._owner or not self._autopilot.wants_setpoints:
+            return
+        # The queue of a link that has become slow is as old as the loss: it must not end what the others go on with.
+        if in_time or not self._autopilot.state.failsafe:
             self._autopilot.follow(setpoint, now)
 
     def refuse(self, why: str, sender: Sender, now: float) -> None:
