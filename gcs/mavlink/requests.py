@@ -154,7 +154,7 @@ class Requests:
             self.payload_unit_answers[message.command] = message.result
 
     def take_value(self, message: mavlink.MAVLink_param_value_message) -> None:
-        """Take the value of a parameter."""
+        """Take the value of a parameter, where it is a possible one."""
         self._for_log.take_value(message)
         if message.param_id not in self._kept:
             return
@@ -162,6 +162,6 @@ class Requests:
             value = px4.parameter_from_wire(message.param_value, message.param_type)
         except ValueError:
             return
-        if math.isfinite(value):
+        if math.isfinite(value) and (value > 0.0 or message.param_id not in px4.POSITIVE_PARAMETERS):
             self._parameters[message.param_id] = float(value)
             self._wanted.pop(message.param_id, None)

@@ -3,6 +3,7 @@
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
 
+from gcs.mavlink import px4
 from gcs.mavlink.requests import CommandState, Requests
 from gcs.mavlink.settings import LinkSettings
 
@@ -34,6 +35,17 @@ def test_parameter_is_requested_at_once_and_again_until_it_is_known():
     requests.take_value(value_of("WANTED", 2.5))
     assert known["WANTED"] == 2.5
     assert requests.due(100.0) == []
+
+
+@pytest.mark.parametrize("value", [0.0, -3.0, float("inf")])
+def test_thrust_that_no_vehicle_has_is_not_taken(value):
+    known = {px4.PARAM_THRUST_MAX: 30.0}
+    requests = Requests(3, known, SETTINGS)
+    requests.want_parameters((px4.PARAM_THRUST_MAX, px4.PARAM_LAND_DELAY))
+    requests.take_value(value_of(px4.PARAM_THRUST_MAX, value))
+    assert known == {px4.PARAM_THRUST_MAX: 30.0}
+    requests.take_value(value_of(px4.PARAM_LAND_DELAY, 0.0))
+    assert known[px4.PARAM_LAND_DELAY] == 0.0
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import pytest
@@ -129,6 +130,14 @@ def test_inconsistent_or_missing_stop_plan_is_not_followed(flying: Bench, late: 
     flying.run(5.0)
     assert flying.vehicle.autopilot.failsafe
     assert flying.body.position[0] - x == pytest.approx(0.0, abs=0.3)
+
+
+@pytest.mark.parametrize("far", [(0.0, 0.0, 0.0, 1.0, 1.0), (0.0, 0.0, 1.0, 1.0, 1.1), (0.0, 50.0, 99.0, 99.0, 99.0)])
+def test_stop_plan_that_does_not_end_at_rest_or_leads_far_away_is_refused(flying: Bench, far: Sequence[float]) -> None:
+    x, y, z = flying.body.position
+    refused = flying.vehicle.refused_setpoints
+    flying.send(stop_plan(flying, flying.now, control_points=[(x + k, y, z) for k in far]))
+    assert flying.vehicle.autopilot.state.stop_plan is None and flying.vehicle.refused_setpoints == refused + 1
 
 
 @pytest.mark.parametrize("duration", [0.05, 0.9, 4.0])
