@@ -139,6 +139,8 @@ class Estimator:
         self._nominal_mass = model.parameters.m_0
         self._other_mass_since = math.inf
         """Time since when the learnt mass is another than the model's (s); inf: it is not."""
+        self._follows_mass = False
+        """True once the model has taken a learnt mass in the air."""
         self._filter = ErrorStateFilter(self._process)
         self._update = MeasurementUpdate(self.measurement_model, self.health, s)
         self._replay = ReplayBuffer(s.history, s.simultaneous)
@@ -153,7 +155,7 @@ class Estimator:
         """Begin at ``time`` (s) from the state ``x`` (12 + 11 N,) of a team on the ground, under ``load``."""
         self.setpoints.clear()
         self.health.start()
-        self._other_mass_since = math.inf
+        self._other_mass_since, self._follows_mass = math.inf, False
         self._begin(time, np.concatenate([x, self._process.forces_of(load)]))
 
     def _begin(self, time: float, x: Array) -> None:
@@ -183,15 +185,18 @@ class Estimator:
         The links' tension is then that of the model, and with it the motion of payload and UAVs about each other. A
         blow is learnt as a mass, too, but does not last.
         """
-        before = self._process
+        before, s = self._process, self.settings
         nominal, g = before.model.parameters.m_0, before.model.parameters.g
-        if abs(mass - nominal) <= self.settings.model_mass_error * nominal:
+        off = abs(mass - nominal) / nominal
+        # One that was taken may be of a blow, or learnt by half: it is corrected when it has settled.
+        if off <= (s.model_mass_settled if self._follows_mass else s.model_mass_error):
             self._other_mass_since = math.inf
             return
         self._other_mass_since = min(self._other_mass_since, self.time)
-        if self.time - self._other_mass_since < self.settings.model_mass_time:
+        lasts = s.model_mass_time if off > s.model_mass_error else s.model_mass_settling
+        if self.time - self._other_mass_since < lasts:
             return
-        self._other_mass_since = math.inf
+        self._other_mass_since, self._follows_mass = math.inf, True
         vertical = before.force.start + 2
         process = self._take_model(mass)
         for k, snapshot in enumerate(self._replay.snapshots):

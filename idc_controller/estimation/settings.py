@@ -248,7 +248,9 @@ class EstimatorSettings(SettingsTable):
     simultaneous: float = 0.002  # s; within which measurements are of one moment
     # share of the payload's mass by which the model's may be wrong: the links' frequency is then wrong by half of it
     model_mass_error: Share = 0.25
-    model_mass_time: float = 0.3  # s; for which it must be: a blow is shorter
+    model_mass_time: float = 0.3  # s; for which it must be
+    model_mass_settled: Share = 0.05  # the same of a mass that was taken, within which it stays
+    model_mass_settling: float = 1.0  # s; for which it must be beyond: twice the time constant of the learnt load
     payload_timeout: float = 0.3  # s; without the payload unit until a payload on ground is held
     process: ProcessNoiseSettings = field(default_factory=ProcessNoiseSettings)
     initial: InitialCovarianceSettings = field(default_factory=InitialCovarianceSettings)

@@ -274,3 +274,27 @@ def test_model_takes_a_mass_that_is_learnt_far_from_its_own_for_long_and_carries
     # What it was off the model's mass is no force any more, and the other way round.
     assert weight[1] == pytest.approx(weight[0], abs=1e-6)
     assert bool(estimate.force[2] != before.force[2]) is taken
+
+
+def test_model_that_has_taken_the_mass_of_a_blow_goes_back_to_the_one_that_is_learnt_then():
+    settings, (estimator, before, _) = EstimatorSettings(), run(samples_of(0.5))
+
+    def model():
+        return estimator._process.model.parameters.m_0
+
+    def learnt(mass, seconds, last):
+        for moment in samples_of(last + seconds):
+            fresh = [measurement for measurement in moment if measurement.time > last]
+            for measurement in fresh:
+                estimator.add(measurement)
+            if fresh:
+                estimator.estimate(fresh[-1].time, REFERENCE)
+                estimator.follow_mass(mass)
+        return last + seconds
+
+    time = learnt(0.6 * P.m_0, settings.model_mass_time + 0.1, before.time)
+    assert model() == pytest.approx(0.6 * P.m_0)
+    time = learnt(0.7 * P.m_0, 0.5 * settings.model_mass_settling, time)
+    assert model() == pytest.approx(0.6 * P.m_0)
+    learnt(0.7 * P.m_0, settings.model_mass_settling, time)
+    assert model() == pytest.approx(0.7 * P.m_0)
