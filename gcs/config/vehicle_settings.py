@@ -106,6 +106,8 @@ class LandDetectorSettings(SettingsTable):
 
     lifted: float = 0.15  # m; above where it was armed: the vehicle is in the air
     vertical_speed_max: float = 0.1  # m/s; vertical speed of a vehicle on the ground
+    horizontal_speed_max: float = 0.15  # m/s; of one whose rotors may stop: PX4's LNDMC_XY_VEL_MAX
+    rest_timeout: float = 5.0  # s; after which they stop however it moves
     time: float = 0.5  # s; for which a vehicle must stand
     time_elsewhere: float = 5.0  # s; the same, on its own and not at the altitude where it was armed
     altitude_tolerance: float = 0.5  # m; from the altitude where it was armed: that of landing, or its drift

@@ -25,6 +25,7 @@ class Silent:
     """A vehicle that is where it plans to be, above the ground, and receives nothing once it has come to ``state``."""
 
     def __init__(self, state):
+        self.aside = 0.0  # m/s; of a vehicle that stands
         self.now, self.parameters = 0.0, vehicle_parameters(AIRFRAME, 1, 250, AutopilotSettings())
         self.pilot = Autopilot(AIRFRAME, self.parameters)
         self.step()
@@ -46,7 +47,7 @@ class Silent:
         self.now += STEP
         hold = self.pilot.state.hold
         down, sinking = (-5.0, 0.0) if hold is None else (each[2] for each in hold.plan.at(self.now)[:2])
-        velocity = (0.0, 0.0, sinking if down < GROUND else 0.0)
+        velocity = (0.0, 0.0, sinking) if down < GROUND else (self.aside, 0.0, 0.0)
         sample = Measurement(self.now, (1, 0, 0, 0), (0, 0, 0), (0.0, 0.0, min(down, GROUND)), velocity)
         step_alone(self.pilot, sample, self.now)
 
@@ -85,6 +86,18 @@ def test_vehicle_that_is_armed_on_the_ground_in_hold_is_disarmed_without_a_groun
     ((state, after),) = vehicle.states()
     assert state is TeamState.DISARMED
     assert after == pytest.approx(vehicle.parameters[px4.PARAM_LINK_LOSS], abs=2.5 * STEP)
+
+
+@pytest.mark.parametrize(("slows_after", "waits"), [(0.0, 0.0), (2.0, 2.0), (60.0, 5.0)])
+def test_rotors_stop_once_a_vehicle_that_stands_is_at_rest_or_after_a_timeout(slows_after, waits):
+    at_rest, moving = Silent(TeamState.LAND), Silent(TeamState.LAND)
+    at_rest.states()
+    moving.aside = 0.4
+    while moving.state is not TeamState.DISARMED:
+        if moving.now > at_rest.now + slows_after - 1.5 * STEP:
+            moving.aside = 0.0
+        moving.step()
+    assert moving.now - at_rest.now == pytest.approx(waits, abs=3.5 * STEP)
 
 
 def test_each_failsafe_of_a_vehicle_with_a_team_ends_a_state_of_the_table():

@@ -57,6 +57,8 @@ class Autopilot:
             SetpointStream(settings.setpoints),
         )
         self._shown: tuple[int, bool, bool, int] | None = None
+        self._stands_since = math.inf
+        """Since when it has stood on its payload in a descent (s)."""
         self.changes = 0
 
     # Interface to the ground
@@ -201,7 +203,7 @@ class Autopilot:
         """Take the actions of failsafes and of a touch-down."""
         check_failsafes(COUPLED, self.state, now)
         if self.state.hold is not None:
-            self._check_touchdown()
+            self._check_touchdown(now)
 
     def _decide_anew(self) -> None:
         """Decide with the next step, too: a message of a ground, or the last decision, may have changed anything."""
@@ -236,8 +238,20 @@ class Autopilot:
             level = attitude_of_force(0.0, 0.0, -1.0, euler_of(measured.attitude)[2])
             state.actuation.command(level, NO_RATES, 0.0, now)
 
-    def _check_touchdown(self) -> None:
+    def _check_touchdown(self, now: float) -> None:
         state = self.state
-        if state.armed and state.is_descending and not state.land.in_air:
-            state.notices.append("Touch-down: disarmed")
-            state.stop()
+        if not (state.armed and state.is_descending and not state.land.in_air):
+            self._stands_since = math.inf
+            return
+        self._stands_since = min(self._stands_since, now)
+        if self._moves_aside and now - self._stands_since < state.settings.land_detector.rest_timeout:
+            return  # with its rotors off its link would fall over
+        state.notices.append("Touch-down: disarmed")
+        state.stop()
+
+    @property
+    def _moves_aside(self) -> bool:
+        state, measured = self.state, self.state.navigation.estimate
+        if measured is None or state.navigation.is_reckoned:
+            return False
+        return math.hypot(*measured.velocity[:2]) > state.settings.land_detector.horizontal_speed_max
