@@ -117,10 +117,11 @@ def test_parameter_that_cannot_be_set_is_refused_with_the_reason(free_swarm, nam
     async def program(client):
         texts = first(client.telemetry.subscribe_status_text(), lambda found: found.text == text)
         listening = asyncio.create_task(texts)
-        with pytest.raises(ParamError) as refused:
-            await client.param.set_param_float(name, value)
-        await listening
-        return refused.value.result
+        while True:  # until the subscription has begun, which nothing tells
+            with pytest.raises(ParamError) as refused:
+                await client.param.set_param_float(name, value)
+            if listening.done():
+                return refused.value.result
 
     assert fly(free_swarm.sdk_port(2), program) == result
 
