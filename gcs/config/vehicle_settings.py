@@ -66,7 +66,7 @@ class SetpointSettings(SettingsTable):
     rate_max: float = 20.0  # rad/s; largest body rate of a set-point
     quaternion_norm_error_max: float = 0.1  # deviation of a set-point quaternion's norm from 1
     stop_duration_max: float = 60.0  # s; longest stop plan
-    stop_speed_max: float = 20.0  # m/s; largest mean speed of a stop plan: no team flies as fast
+    stop_speed_max: float = 20.0  # m/s; of a stop plan at its start, and its mean: no team flies as fast
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -132,7 +132,13 @@ def test_inconsistent_or_missing_stop_plan_is_not_followed(flying: Bench, late: 
     assert flying.body.position[0] - x == pytest.approx(0.0, abs=0.3)
 
 
-@pytest.mark.parametrize("far", [(0.0, 0.0, 0.0, 1.0, 1.0), (0.0, 0.0, 1.0, 1.0, 1.1), (0.0, 50.0, 99.0, 99.0, 99.0)])
+@pytest.mark.parametrize(
+    "far",
+    [
+        (0.0, 0.0, 0.0, 1.0, 1.0), (0.0, 0.0, 1.0, 1.0, 1.1), (0.0, 0.0, 0.0, 1e30, 0.0),
+        (0.0, 50.0, 99.0, 99.0, 99.0), (0.0, 21.0, 0.0, 0.0, 0.0), (0.0, 1e30, 0.0, 0.0, 0.0),
+    ],
+)  # fmt: skip
 def test_stop_plan_that_does_not_end_at_rest_or_leads_far_away_is_refused(flying: Bench, far: Sequence[float]) -> None:
     x, y, z = flying.body.position
     refused = flying.vehicle.refused_setpoints

@@ -103,7 +103,9 @@ def checked_stop_plan(content: StopPlanContent, limits: SetpointSettings) -> Sto
         raise SetpointError(f"duration {duration} is outside 0 .. {limits.stop_duration_max} s")
     if not points[2] == points[3] == points[4]:  # velocity and acceleration at the end
         raise SetpointError("it does not end at rest")
-    if not math.dist(points[0], points[4]) <= limits.stop_speed_max * duration:
+    # At the start, too: with the end at rest that bounds every control point.
+    speed = max(math.dist(points[0], points[4]), 4.0 * math.dist(points[0], points[1])) / duration
+    if not speed <= limits.stop_speed_max:
         raise SetpointError(f"it is faster than {limits.stop_speed_max} m/s")
     if not abs(descent - start) <= HOLD_MAX:
         raise SetpointError(f"the descent begins {descent - start} s after the stop, limit {HOLD_MAX} s")
