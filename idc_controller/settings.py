@@ -5,6 +5,7 @@ declared by :func:`setting`, with unit, meaning and range, and listed in ``docs/
 plain default, with its meaning in a comment.
 """
 
+import math
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Annotated, Any, cast
@@ -26,6 +27,16 @@ class Setting:
     ge: float | None = None
     lt: float | None = None
     le: float | None = None
+
+    def allows(self, value: float) -> bool:
+        """Return whether ``value`` is finite and within the bounds."""
+        return (
+            math.isfinite(value)
+            and (self.gt is None or value > self.gt)
+            and (self.ge is None or value >= self.ge)
+            and (self.lt is None or value < self.lt)
+            and (self.le is None or value <= self.le)
+        )
 
 
 def setting(default: Any, unit: str, meaning: str, **bounds: float) -> Any:

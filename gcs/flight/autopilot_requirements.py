@@ -5,12 +5,16 @@ No requirement depends on which program a vehicle runs: what it has sent counts.
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.config.flight_settings import FailsafeSettings
+from gcs.config.vehicle_settings import VehicleFailsafeSettings
 from gcs.mavlink import px4
+from gcs.mavlink.requests import WantedParameter
 from gcs.mavlink.vehicle_link import VehicleLink
+from idc_controller.settings import METADATA_KEY, Setting
 
 
 class Requirement(NamedTuple):
@@ -27,16 +31,28 @@ class Requirement(NamedTuple):
     """Whether the team is not connected without it; what takes several round trips is wanted before arming."""
 
 
+_POSITIVE = Setting("", "", gt=0.0)
+
+
+def _settable(purpose: str, settings: type[Any], key: str) -> WantedParameter:
+    """Return a parameter that may be set within the bounds that the setting ``key`` is declared with."""
+    return WantedParameter(purpose, settings.__dataclass_fields__[key].metadata[METADATA_KEY], is_settable=True)
+
+
 PARAMETERS = {
-    px4.PARAM_THRUST_MAX: "force of thrust 1 (N); thrust must be linear in force",
-    px4.PARAM_ATTITUDE_KP: "attitude gain (1/s2), for the model",
-    px4.PARAM_ATTITUDE_KD: "rate gain (1/s), for the model",
-    px4.PARAM_MOTOR_LAG: "time constant of the motors (s), for the model",
-    px4.PARAM_ONBOARD_RATE: "rate of the onboard loop (Hz): when a set-point takes effect",
-    px4.PARAM_SETPOINT_LOSS: "time without set-points after which the vehicle holds by its stop plan (s)",
-    px4.PARAM_LAND_DELAY: "time from that hold to the descent (s)",
+    px4.PARAM_THRUST_MAX: WantedParameter("force of thrust 1 (N); thrust must be linear in force", _POSITIVE),
+    px4.PARAM_ATTITUDE_KP: WantedParameter("attitude gain (1/s2), for the model", _POSITIVE),
+    px4.PARAM_ATTITUDE_KD: WantedParameter("rate gain (1/s), for the model", _POSITIVE),
+    px4.PARAM_MOTOR_LAG: WantedParameter("time constant of the motors (s), for the model", _POSITIVE),
+    px4.PARAM_ONBOARD_RATE: WantedParameter("rate of the onboard loop (Hz): when a set-point takes effect", _POSITIVE),
+    px4.PARAM_SETPOINT_LOSS: _settable(
+        "time without set-points after which the vehicle holds by its stop plan (s)",
+        FailsafeSettings,
+        "telemetry_timeout",
+    ),
+    px4.PARAM_LAND_DELAY: _settable("time from that hold to the descent (s)", VehicleFailsafeSettings, "land_delay"),
 }
-"""Parameters that it must have, and what for."""
+"""Parameters that it must have, what for, and which values are taken: one owner for preflight and for flight."""
 
 
 def _has_sent(parameter: str) -> Callable[[VehicleLink, float], bool]:
@@ -84,7 +100,7 @@ REQUIREMENTS = (
         lambda link, since: math.isfinite(link.clock.round_trip_max),
         at_connect=False,
     ),
-    *(Requirement(name, purpose, _has_sent(name)) for name, purpose in PARAMETERS.items()),
+    *(Requirement(name, wanted.purpose, _has_sent(name)) for name, wanted in PARAMETERS.items()),
 )
 """Evaluated in this order."""
 

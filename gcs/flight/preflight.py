@@ -94,7 +94,7 @@ class Preflight:
         silent = []
         incomplete: dict[str, list[int]] = {}
         for link in self._team.links:
-            link.requests.want_parameters(tuple(PARAMETERS))
+            link.requests.want_parameters(PARAMETERS)
             if now - link.received_at > timeout:
                 silent.append(f"vehicle {link.system_id} {_silence(link)}")
             elif lacking := missing(link, now - timeout, at_connect=True):

@@ -35,10 +35,6 @@ PARAM_LINK_LOSS_ACTION = "NAV_DLL_ACT"  #: integer, one of LINK_LOSS_...
 PARAM_LAND_SPEED = "MPC_LAND_SPEED"  #: m/s, the descent
 PARAM_TAKEOFF_ALTITUDE = "MIS_TAKEOFF_ALT"  #: m
 PARAM_SYSTEM_ID = "MAV_SYS_ID"  #: integer, read-only
-POSITIVE_PARAMETERS = frozenset({
-    PARAM_THRUST_MAX, PARAM_MASS, PARAM_ATTITUDE_KP, PARAM_ATTITUDE_KD, PARAM_MOTOR_LAG, PARAM_ONBOARD_RATE,
-})  # fmt: skip
-"""Of no vehicle zero or less."""
 
 PREFLIGHT_DISARM = 10.0
 """s for which an armed aircraft waits for a take-off: PX4's default of COM_DISARM_PRFLT."""

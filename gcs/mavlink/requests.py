@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any
+from typing import Any, NamedTuple
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -12,6 +12,17 @@ from gcs.mavlink import px4
 from gcs.mavlink.log_requests import LogRequests
 from gcs.mavlink.messages import Message
 from gcs.mavlink.settings import LinkSettings
+from idc_controller.settings import Setting
+
+
+class WantedParameter(NamedTuple):
+    """A parameter of a vehicle that the ground depends on."""
+
+    purpose: str
+    possible: Setting
+    """The values that are taken."""
+    is_settable: bool = False
+    """Whether it may change. Another one is taken once: its value is the one that was checked before take-off."""
 
 
 class CommandState(Enum):
@@ -63,8 +74,8 @@ class Requests:
         self._system_id, self._parameters, self.settings = system_id, parameters, settings
         self._pending: dict[int, Command] = {}
         self._wanted: dict[str, float] = {}
-        self._kept: set[str] = set()
-        """Names of the parameters that were ever wanted: any others, forged ones too, are not kept."""
+        self._kept: dict[str, WantedParameter] = {}
+        """Parameters that were ever wanted, by name: any others, forged ones too, are not kept."""
         self._for_log = LogRequests(system_id, settings)
         self._payload_unit_wanted = False
         self._payload_unit_due = -math.inf
@@ -80,10 +91,10 @@ class Requests:
         """Request, once, what its log is to have: see :class:`.LogRequests`."""
         self._for_log.want()
 
-    def want_parameters(self, names: tuple[str, ...]) -> None:
-        """Request parameters until they are known."""
-        self._kept.update(names)
-        for name in names:
+    def want_parameters(self, wanted: Mapping[str, WantedParameter]) -> None:
+        """Request parameters, by name, until they are known."""
+        self._kept.update(wanted)
+        for name in wanted:
             if name not in self._parameters:
                 self._wanted.setdefault(name, -math.inf)
 
@@ -154,14 +165,16 @@ class Requests:
             self.payload_unit_answers[message.command] = message.result
 
     def take_value(self, message: mavlink.MAVLink_param_value_message) -> None:
-        """Take the value of a parameter, where it is a possible one."""
+        """Take the value of a parameter, where it is a possible one and may have changed."""
         self._for_log.take_value(message)
-        if message.param_id not in self._kept:
+        name = message.param_id
+        wanted = self._kept.get(name)
+        if wanted is None or not (wanted.is_settable or name in self._wanted):
             return
         try:
             value = px4.parameter_from_wire(message.param_value, message.param_type)
         except ValueError:
             return
-        if math.isfinite(value) and (value > 0.0 or message.param_id not in px4.POSITIVE_PARAMETERS):
-            self._parameters[message.param_id] = float(value)
-            self._wanted.pop(message.param_id, None)
+        if wanted.possible.allows(value):
+            self._parameters[name] = float(value)
+            self._wanted.pop(name, None)

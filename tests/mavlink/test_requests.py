@@ -4,12 +4,16 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
 
 from gcs.mavlink import px4
-from gcs.mavlink.requests import CommandState, Requests
+from gcs.mavlink.requests import CommandState, Requests, WantedParameter
 from gcs.mavlink.settings import LinkSettings
+from idc_controller.settings import Setting
 
 SETTINGS = LinkSettings()
 ARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM
 RETRY = SETTINGS.retry_interval
+WANTED = WantedParameter("", Setting("", ""))
+FIXED = WantedParameter("", Setting("N", "", gt=0.0))
+SETTABLE = WantedParameter("", Setting("s", "", ge=0.0, le=60.0), is_settable=True)
 
 
 @pytest.fixture
@@ -24,10 +28,10 @@ def value_of(name, value, kind=mavlink.MAV_PARAM_TYPE_REAL32):
 def test_parameter_is_requested_at_once_and_again_until_it_is_known():
     known = {"KNOWN": 1.0}
     requests = Requests(3, known, SETTINGS)
-    requests.want_parameters(("KNOWN", "WANTED"))
+    requests.want_parameters({"KNOWN": WANTED, "WANTED": WANTED})
     [first] = requests.due(5.0)
     assert (first.param_id, first.target_system) == ("WANTED", 3)
-    requests.want_parameters(("WANTED",))
+    requests.want_parameters({"WANTED": WANTED})
     assert requests.due(5.0 + 0.9 * RETRY) == []
     assert len(requests.due(5.0 + 1.1 * RETRY)) == 1
     requests.take_value(value_of("WANTED", float("nan")))
@@ -37,15 +41,49 @@ def test_parameter_is_requested_at_once_and_again_until_it_is_known():
     assert requests.due(100.0) == []
 
 
-@pytest.mark.parametrize("value", [0.0, -3.0, float("inf")])
-def test_thrust_that_no_vehicle_has_is_not_taken(value):
-    known = {px4.PARAM_THRUST_MAX: 30.0}
+@pytest.mark.parametrize("value", [0.0, -3.0, float("inf"), float("nan")])
+def test_impossible_value_is_not_taken_and_requested_again(value):
+    known = {}
     requests = Requests(3, known, SETTINGS)
-    requests.want_parameters((px4.PARAM_THRUST_MAX, px4.PARAM_LAND_DELAY))
+    requests.want_parameters({px4.PARAM_THRUST_MAX: FIXED})
+    requests.take_value(value_of(px4.PARAM_THRUST_MAX, value))
+    assert known == {} and len(requests.due(5.0)) == 1
+    requests.take_value(value_of(px4.PARAM_THRUST_MAX, 30.0))
+    assert known == {px4.PARAM_THRUST_MAX: 30.0} and requests.due(100.0) == []
+
+
+@pytest.mark.parametrize("value", [0.0, 0.01, 29.0, 1e30, float("nan")])
+def test_value_that_cannot_be_set_is_taken_once(value):
+    """What comes later has passed no check, and set-points are shares of it."""
+    known = {}
+    requests = Requests(3, known, SETTINGS)
+    requests.want_parameters({px4.PARAM_THRUST_MAX: FIXED})
+    for later in (30.0, value):
+        requests.take_value(value_of(px4.PARAM_THRUST_MAX, later))
+    requests.want_parameters({px4.PARAM_THRUST_MAX: FIXED})  # before another flight
     requests.take_value(value_of(px4.PARAM_THRUST_MAX, value))
     assert known == {px4.PARAM_THRUST_MAX: 30.0}
-    requests.take_value(value_of(px4.PARAM_LAND_DELAY, 0.0))
-    assert known[px4.PARAM_LAND_DELAY] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("value", "is_taken"),
+    [(0.0, True), (60.0, True), (-0.1, False), (60.1, False), (3e38, False), (float("nan"), False)],
+)
+def test_value_that_can_be_set_is_taken_again_within_its_range(value, is_taken):
+    known = {}
+    requests = Requests(3, known, SETTINGS)
+    requests.want_parameters({px4.PARAM_LAND_DELAY: SETTABLE})
+    for later in (5.0, value):
+        requests.take_value(value_of(px4.PARAM_LAND_DELAY, later))
+    assert known == {px4.PARAM_LAND_DELAY: value if is_taken else 5.0}
+
+
+def test_value_of_a_type_that_is_not_used_is_not_taken():
+    known = {}
+    requests = Requests(3, known, SETTINGS)
+    requests.want_parameters({"WANTED": WANTED})
+    requests.take_value(value_of("WANTED", 2.5, 77))
+    assert known == {}
 
 
 @pytest.mark.parametrize(

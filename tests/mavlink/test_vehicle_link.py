@@ -9,12 +9,15 @@ import pytest
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.layout import Sample
+from gcs.mavlink.requests import WantedParameter
 from gcs.mavlink.vehicle_link import VehicleLink
+from idc_controller.settings import Setting
 
 OWN, UNIT = px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT
 NEVER = -math.inf
 PREARM, RANGE = mavlink.MAV_SYS_STATUS_PREARM_CHECK, mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY
 STAMP = 5000
+THR_MAX = WantedParameter("force of thrust 1 (N)", Setting("N", "", gt=0.0))
 
 
 class Linked:
@@ -127,7 +130,7 @@ def test_answer_to_a_timesync_request_gives_the_latency_and_a_request_of_the_veh
 def test_companion_answers_and_reports_nothing_for_its_vehicle(linked):
     link = linked.link
     sent = link.clock.request(10.0)
-    link.requests.want_parameters(("THR_MAX",))
+    link.requests.want_parameters({"THR_MAX": THR_MAX})
     arming = link.requests.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1.0)
     messages = [
         mavlink.MAVLink_timesync_message(1, sent), sys_status(PREARM, 0), heartbeat(128, px4.MODE_OFFBOARD),
@@ -183,7 +186,7 @@ def test_text_in_chunks_is_kept_as_one(linked):
 
 
 def test_parameter_that_is_wanted_is_known_and_no_other_is_kept(linked):
-    linked.link.requests.want_parameters(("THR_MAX",))
+    linked.link.requests.want_parameters({"THR_MAX": THR_MAX})
     for name in (b"THR_MAX", *(b"FORGED_%d" % number for number in range(500))):
         linked.send(1.0, mavlink.MAVLink_param_value_message(name, 27.5, mavlink.MAV_PARAM_TYPE_REAL32, 1, 0))
     assert linked.link.status.parameters == {"THR_MAX": 27.5}

@@ -1,5 +1,6 @@
 """Before take-off: what a vehicle lacks is named, and where payload and vehicles stand is averaged."""
 
+import math
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -17,6 +18,7 @@ from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 
 NOW = 50.0
 TIMEOUT = DEFAULTS.failsafe.telemetry_timeout
+SETTABLE = (px4.PARAM_SETPOINT_LOSS, px4.PARAM_LAND_DELAY)
 ADDRESSES = [("10.0.0.4", 14580), ("10.0.0.7", 14581)]
 
 
@@ -142,6 +144,20 @@ def test_parameters_are_requested_from_all_and_the_time_of_the_first_attempt_is_
     assert preflight.connect_start == NOW
     for link in links:
         assert sorted(m.param_id for m in link.requests.due(NOW)) == sorted(PARAMETERS)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "is_possible"),
+    [
+        *((name, value, value > 0.0) for name in PARAMETERS if name not in SETTABLE for value in (-1.0, 0.0, 0.5)),
+        *((px4.PARAM_SETPOINT_LOSS, value, value == TIMEOUT) for value in (-5.0, 0.0, TIMEOUT, 61.0)),
+        *((px4.PARAM_LAND_DELAY, value, 0.0 <= value <= 3600.0) for value in (-100.0, 0.0, 3600.0, 3601.0)),
+        *((name, value, False) for name in PARAMETERS for value in (math.nan, math.inf)),
+    ],
+)
+def test_values_that_a_flight_depends_on_are_possible_ones(name, value, is_possible):
+    assert PARAMETERS[name].possible.allows(value) is is_possible
+    assert PARAMETERS[name].is_settable is (name in SETTABLE)
 
 
 def position(source, *place):
