@@ -21,8 +21,8 @@ from gcs.config.overrides import plain, with_settings
 from gcs.config.toml_file import GivenTables
 from gcs.config.validate import UnusableFile
 from gcs.drivers.interrupt import Interrupt
+from gcs.drivers.participant import InterruptWatch
 from gcs.errors import UnusableInput
-from gcs.flight.failsafe import Failsafe
 from gcs.flight.feasibility import preflight
 from gcs.mission.faults import check_faults_of, fault_problems, parameter_problems, read_fault
 from gcs.mission.model import Fault, Limits, Mission
@@ -97,13 +97,12 @@ def fly(
             LOG.warning(others)
         folder.keep()
 
-        def land_if_interrupted() -> None:
-            if interrupt.requested and not flight.flight.failsafes.interrupted:
-                flight.station.raise_failsafe(flight.now, Failsafe.INTERRUPTED, "interrupted")
-
+        watch = InterruptWatch(interrupt, flight.station)
         interrupt.begin_flight()
-        flight.fly(land_if_interrupted)
+        flight.fly(stop=lambda: watch.ends(flight.now))
         interrupt.end_flight()
+        if interrupt.requested_again:
+            raise KeyboardInterrupt
         found = flown(flight.result(), flight.setpoints, replay, keep=run_dir is not None)
         if interrupt.requested:
             raise KeyboardInterrupt

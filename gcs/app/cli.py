@@ -51,15 +51,16 @@ def main(argv: Sequence[str] | None = None) -> int:
     choose_kernels()
     # pydantic would read the metadata of all that is installed.
     os.environ["PYDANTIC_DISABLE_PLUGINS"] = "__all__"
-    with output_that_may_end("stdout", "stderr"), Interrupt():
+    with output_that_may_end("stdout", "stderr"):
         return _main(words)
 
 
 def _main(words: list[str]) -> int:
     try:
-        arguments = _parse(words)
-        with logging_to(arguments):
-            return _run(arguments)
+        with Interrupt():
+            arguments = _parse(words)
+            with logging_to(arguments):
+                return _run(arguments)
     except UnusableInput as error:
         print(error, file=sys.stderr)
         return ExitStatus.UNUSABLE_INPUT

@@ -28,9 +28,7 @@ from gcs.errors import GcsError, UnusableInput
 from gcs.flight import stack
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.compute_times import ComputeTimes
-from gcs.flight.condition import Trigger
 from gcs.flight.control_loop import ControlLoop
-from gcs.flight.failsafe import Failsafe
 from gcs.flight.feasibility import check_curve
 from gcs.flight.flight import Flight
 from gcs.flight.ground_station import GroundStation, Recorder
@@ -139,24 +137,19 @@ def fly(
 
         folder.keep()
         interrupt.begin_flight()
-        try:
-            if options.realtime:
-                run_in_real_time(
-                    station, connection, interrupt, settings, speed=options.pace, progress=update, end_reason=ended
-                )
-            else:
-                clock = _clock_address(options, simulator)
-                in_lockstep = resources.enter_context(closing(LockstepConnection(connection, clock)))
-                hint = "" if simulator is not None else "; for a swarm in real time add --realtime"
-                pace = Pace(options.pace) if options.view else None
-                run_in_lockstep(
-                    station, in_lockstep, clock, interrupt, settings,
-                    pace=pace, progress=update, end_reason=ended, hint=hint,
-                )  # fmt: skip
-        except KeyboardInterrupt:
-            flight = station.flight
-            reason = "interrupted twice: the vehicles land autonomously"
-            flight.raise_failsafe(flight.time, Failsafe.INTERRUPTED_TWICE, Trigger(reason))
+        if options.realtime:
+            run_in_real_time(
+                station, connection, interrupt, settings, speed=options.pace, progress=update, end_reason=ended
+            )
+        else:
+            clock = _clock_address(options, simulator)
+            in_lockstep = resources.enter_context(closing(LockstepConnection(connection, clock)))
+            hint = "" if simulator is not None else "; for a swarm in real time add --realtime"
+            pace = Pace(options.pace) if options.view else None
+            run_in_lockstep(
+                station, in_lockstep, clock, interrupt, settings,
+                pace=pace, progress=update, end_reason=ended, hint=hint,
+            )  # fmt: skip
         interrupt.end_flight()
         resources.close()
         incomplete = [*recorder.incomplete.found]

@@ -14,7 +14,6 @@ from typing import NamedTuple
 from gcs.app.flight_log import FlightLog
 from gcs.app.fly import simulator_arguments
 from gcs.app.fly_options import FlyOptions
-from gcs.app.logs import LOG
 from gcs.app.served_flight import Flights, take_truth
 from gcs.drivers.connection import Connection, LockstepConnection
 from gcs.drivers.forked_program import ForkedProgram
@@ -22,7 +21,6 @@ from gcs.drivers.interrupt import Interrupt
 from gcs.drivers.lockstep import Pace, run_in_lockstep
 from gcs.drivers.realtime import run_in_real_time
 from gcs.drivers.simulator import Simulator
-from gcs.flight.failsafe import Failsafe
 from gcs.flight.ground_station import GroundStation
 from gcs.mavlink.address import Address
 from gcs.mission.model import Mission
@@ -88,17 +86,13 @@ def serve(options: ServeOptions, world: Mission, vehicle_sim: ForkedProgram | No
         for name, address in (("team", (host, port)), *(("sends to", client) for client in options.clients)):
             print(f"{name}: udp://{address[0]}:{address[1]}")
         print(f"system {TEAM_SYSTEM}: ready; Ctrl-C lands the payload and ends", flush=True)
-        try:
-            if simulator is None:
-                run_in_real_time(
-                    server, connection, interrupt, world.system.drivers, speed=options.fly.pace, progress=update
-                )
-            else:
-                _run_with(simulator, server, connection, interrupt, options, update)
-        except KeyboardInterrupt:
-            why = "interrupted twice: the vehicles land autonomously"
-            server.raise_failsafe(server.now, Failsafe.INTERRUPTED_TWICE, why)
-            LOG.error(why)
+        if simulator is None:
+            run_in_real_time(
+                server, connection, interrupt, world.system.drivers, speed=options.fly.pace, progress=update
+            )
+        else:
+            _run_with(simulator, server, connection, interrupt, options, update)
+        update()
         interrupt.end_flight()
     if simulator is not None and (reason := simulator.last_lines):
         print(*reason, sep="\n", file=sys.stderr)

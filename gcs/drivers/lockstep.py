@@ -7,7 +7,7 @@ from collections.abc import Callable
 from gcs.config.flight_settings import DriverSettings
 from gcs.drivers.connection import LockstepConnection
 from gcs.drivers.interrupt import Interrupt
-from gcs.drivers.participant import Participant
+from gcs.drivers.participant import InterruptWatch, Participant
 from gcs.flight.failsafe import Failsafe
 from gcs.mavlink.address import Address
 from gcs.mavlink.lockstep import Done, Tick, decode_tick, next_call_us
@@ -58,13 +58,15 @@ def run_in_lockstep(
     join = Done(0, None).encode()
     connection.send(join, clock_address)
     waited = now = 0.0
-    joined = landing = False
+    joined, watch = False, InterruptWatch(interrupt, station)
     inbox: list[tuple[bytes, Address]] = []
     while not station.ended:
         # The world has yet to compute: a look at the socket before would be in vain.
         arrived = connection.wait(settings.join_interval)
         station.resume()
         if not arrived:
+            if watch.ends(now):
+                break
             waited += settings.join_interval
             reason = end_reason()
             if reason is None and waited >= settings.tick_timeout:
@@ -82,9 +84,8 @@ def run_in_lockstep(
             continue
         joined, waited = True, 0.0
         now = tick.time_us * 1e-6
-        if interrupt.requested and not landing:
-            landing = True
-            station.raise_failsafe(now, Failsafe.INTERRUPTED, "interrupted")
+        if watch.ends(now):
+            break
         station.receive_all(inbox, now)
         inbox.clear()
         for datagram, address in station.datagrams_to_send(now):

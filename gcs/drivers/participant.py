@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Protocol
 
+from gcs.drivers.interrupt import Interrupt
 from gcs.flight.failsafe import Failsafe
 from gcs.mavlink.address import Address
 
@@ -34,3 +35,21 @@ class Participant(Protocol):
 
     def add_latency(self, duration: float) -> None:
         """Take the compute latency (s) of what was sent last."""
+
+
+class InterruptWatch:
+    """Obeys the signals that come while ``participant`` runs."""
+
+    def __init__(self, interrupt: Interrupt, participant: Participant) -> None:
+        self._interrupt, self._participant = interrupt, participant
+        self._landing = False
+
+    def ends(self, now: float) -> bool:
+        """Raise the failsafe of a signal that has come at ``now`` (s); return True if control is to end."""
+        if self._interrupt.requested_again:
+            reason = "interrupted twice: the vehicles land autonomously"
+            self._participant.raise_failsafe(now, Failsafe.INTERRUPTED_TWICE, reason)
+        elif self._interrupt.requested and not self._landing:
+            self._landing = True
+            self._participant.raise_failsafe(now, Failsafe.INTERRUPTED, "interrupted")
+        return self._interrupt.requested_again

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from gcs.config.flight_settings import DriverSettings
 from gcs.drivers.connection import Connection
 from gcs.drivers.interrupt import Interrupt
-from gcs.drivers.participant import Participant
+from gcs.drivers.participant import InterruptWatch, Participant
 from gcs.flight.failsafe import Failsafe
 
 
@@ -26,12 +26,11 @@ def run_in_real_time(
     ``end_reason`` returns why the vehicles have ended, None while they run.
     """
     start = clock()
-    landing = False
+    watch = InterruptWatch(interrupt, station)
     while not station.ended:
         now = (clock() - start) * speed
-        if interrupt.requested and not landing:
-            landing = True
-            station.raise_failsafe(now, Failsafe.INTERRUPTED, "interrupted")
+        if watch.ends(now):
+            break
         if (reason := end_reason()) is not None:
             station.raise_failsafe(now, Failsafe.SIMULATION_LOST, reason)
         received = [*connection.receive()]

@@ -27,14 +27,14 @@ def send(number):
 
 @pytest.mark.parametrize("first", SIGNALS)
 @pytest.mark.parametrize("second", [CTRL_C, TERMINATE])
-def test_first_signal_in_flight_is_a_request_and_the_second_ends_control(first, second):
+def test_signals_in_flight_are_requests_to_land_and_to_end_control(first, second):
     with Interrupt() as interrupt:
         interrupt.begin_flight()
         send(first)
-        assert interrupt.requested
-        with pytest.raises(KeyboardInterrupt):
+        assert interrupt.requested and not interrupt.requested_again
+        for _ in range(2):  # a third one would leave records open
             send(second)
-        send(second)  # a third one would leave records open
+            assert interrupt.requested_again
 
 
 @pytest.mark.parametrize("first", SIGNALS)
@@ -43,7 +43,20 @@ def test_a_hang_up_is_never_the_second_signal(first):
         interrupt.begin_flight()
         for number in (first, HANG_UP, HANG_UP):
             send(number)
-        assert interrupt.requested
+        assert interrupt.requested and not interrupt.requested_again
+
+
+def test_signal_that_compiled_code_reports_as_its_own_error_is_an_interrupt():
+    with pytest.raises(KeyboardInterrupt), Interrupt():
+        try:
+            send(CTRL_C)
+        except KeyboardInterrupt as error:
+            raise SystemError("returned a result with an exception set") from error
+
+
+def test_error_of_compiled_code_without_a_signal_is_passed_on():
+    with pytest.raises(SystemError), Interrupt():
+        raise SystemError
 
 
 @pytest.mark.parametrize("number", SIGNALS)

@@ -54,8 +54,8 @@ class Station(ScriptedStation):
         return self.due
 
 
-def run(world, station, requested=False, end_reason=lambda: None):
-    interrupt = SimpleNamespace(requested=requested)
+def run(world, station, requested=0, end_reason=lambda: None):
+    interrupt = SimpleNamespace(requested=requested > 0, requested_again=requested > 1)
     run_in_lockstep(station, world, CLOCK, interrupt, SETTINGS, end_reason=end_reason)
 
 
@@ -110,8 +110,17 @@ def test_end_of_the_world_is_reported_at_once():
 
 def test_interrupt_is_raised_once_at_the_next_tick():
     world, station = World([tick(1, 1000)], [tick(2, 2000)]), Station(2)
-    run(world, station, requested=True)
+    run(world, station, requested=1)
     assert station.failsafes == [(0.001, Failsafe.INTERRUPTED, "interrupted")]
+
+
+@pytest.mark.parametrize(("answers", "time"), [([], 0.0), ([[tick(1, 1000)]], 0.001)])
+def test_second_interrupt_ends_control_whether_the_world_answers_or_not(answers, time):
+    world, station = World(*answers), Station(2)
+    run(world, station, requested=2)
+    (failsafe,) = station.failsafes
+    assert failsafe[:2] == (time, Failsafe.INTERRUPTED_TWICE)
+    assert not station.received and not station.ended
 
 
 def test_tick_alone_ends_a_wait_and_comes_behind_the_datagrams_of_the_vehicles():

@@ -54,8 +54,8 @@ class Station(ScriptedStation):
         self.order.append("resumed")
 
 
-def run(wire, station, speed=1.0, requested=False, end_reason=lambda: None):
-    interrupt = SimpleNamespace(requested=requested)
+def run(wire, station, speed=1.0, requested=0, end_reason=lambda: None):
+    interrupt = SimpleNamespace(requested=requested > 0, requested_again=requested > 1)
     run_in_real_time(
         station, wire, interrupt, SETTINGS, speed=speed, clock=wire.read_clock, end_reason=end_reason
     )  # fmt: skip
@@ -96,8 +96,16 @@ def test_datagrams_are_received_at_the_time_of_their_step():
 
 def test_interrupt_is_raised_once_at_its_time():
     station = Station(3, 0.05)
-    run(Wire(), station, requested=True)
+    run(Wire(), station, requested=1)
     assert station.failsafes == [(0.0, Failsafe.INTERRUPTED, "interrupted")]
+
+
+def test_second_interrupt_ends_control_at_once():
+    station = Station(3, 0.05)
+    run(Wire(), station, requested=2)
+    (failsafe,) = station.failsafes
+    assert failsafe[:2] == (0.0, Failsafe.INTERRUPTED_TWICE)
+    assert not station.ended
 
 
 def test_end_of_the_simulated_world_is_raised_with_its_reason():

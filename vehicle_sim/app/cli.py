@@ -1,10 +1,12 @@
 """The command ``vehicle-sim``."""
 
+import signal
 import sys
 
 from gcs.app.imports import importing
 from gcs.app.logs import logging_to
 from gcs.app.output import output_that_may_end
+from gcs.drivers.interrupt import Interrupt
 from gcs.errors import GcsError, UnusableInput
 from gcs.numerics import choose_kernels
 from idc_controller.errors import IdcError
@@ -32,10 +34,11 @@ def _main(arguments: list[str]) -> int:
         print(error, file=sys.stderr)
         return UNUSABLE_INPUT
     try:
-        with importing(), greeting_of_engine_dropped():
-            from vehicle_sim.app.launch import launch
-        with logging_to(options):
-            return launch(options, arguments)
+        with Interrupt((signal.SIGINT,)):
+            with importing(), greeting_of_engine_dropped():
+                from vehicle_sim.app.launch import launch
+            with logging_to(options):
+                return launch(options, arguments)
     except (GcsError, SimulationError, IdcError) as error:
         print(f"vehicle-sim: {error}", file=sys.stderr)
         return UNUSABLE_INPUT
