@@ -53,16 +53,16 @@ def attitude_misaligned(system: System, moment: Moment) -> Trigger | None:
     """
     if moment.phase not in (Phase.CHECK, Phase.ARM, Phase.SPOOL_UP):
         return None
-    limit, landed = system.settings.pad_attitude_error, system.preflight.landed
-    errors = system.preflight.attitude_errors()
-    if min(errors) > limit and not landed:
+    limit, preflight, by_rates = system.settings.pad_attitude_error, system.preflight, "that by its rates"
+    errors = preflight.attitude_errors()
+    if min(errors) > limit and not preflight.landed:
         text = f"the payload unit reports an attitude {min(errors):.2f} rad off every vehicle's (limit {limit:g} rad)"
         return Trigger(text, source="payload")
-    drifts = system.preflight.attitude_drift()
-    for i, (error, drift) in enumerate(zip(errors, drifts, strict=True)):
-        if max(error, drift) > limit:
-            name = f"vehicle {system.team.links[i].system_id}"
-            right = "that by its rates" if landed or error <= limit else "the payload's"
-            error = max(error, drift)
-            return Trigger(f"{name} reports an attitude {error:.2f} rad off {right} (limit {limit:g} rad)", (i,))
+    for found, right in (
+        (errors, by_rates if preflight.landed else "the payload's"), (preflight.attitude_drift(), by_rates)
+    ):  # fmt: skip
+        for i, error in enumerate(found):
+            if error > limit:
+                name = f"vehicle {system.team.links[i].system_id}"
+                return Trigger(f"{name} reports an attitude {error:.2f} rad off {right} (limit {limit:g} rad)", (i,))
     return None

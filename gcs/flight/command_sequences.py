@@ -72,7 +72,7 @@ class AutonomousLanding(CommandSequence):
     """The states that follow OFFBOARD, each commanded when a vehicle enters it that receives nothing."""
 
     descent_pending = True
-    _told = False
+    _descent_answered = False
     """True once every vehicle has answered the command to descend, or was sent it often enough."""
 
     def __init__(self, team: Team, time: float, settings: FlightSettings = DEFAULTS) -> None:
@@ -80,11 +80,11 @@ class AutonomousLanding(CommandSequence):
         _enter(team, TeamState.OFFBOARD.next)
 
     def step(self, time: float, now: float) -> None:
-        """See :class:`CommandSequence`. One that is not heard may hear: it is told to descend before this is done."""
+        """See :class:`CommandSequence`. Vehicles without telemetry may receive commands: also to those it is sent."""
         s, team, elapsed = self._settings.failsafe, self._team, time - self._since
         landed = team.reachable_are_disarmed(now, s.data_link_timeout)
-        self._told |= not (self.descent_pending or team.waits)
-        if landed and self._told:
+        self._descent_answered |= not (self.descent_pending or team.waits)
+        if landed and self._descent_answered:
             self.done = True
         elif elapsed > s.landing_timeout:
             self.problem = f"not every vehicle has landed after {s.landing_timeout:g} s"

@@ -5,19 +5,18 @@ import math
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.condition import Check, Moment, System, Trigger
 from gcs.flight.failsafe import Failsafe
-from gcs.flight.phase import Phase
-from gcs.mavlink.team_failsafe import Reaction
+from gcs.mavlink.team_failsafe import Reaction, TeamState
 
 _ADMITTED = {
-    (check, phase): tuple(
-        (row, row.condition, phase.state.reaction(row.reaction))
+    (check, state): tuple(
+        (row, row.condition, state.reaction(row.reaction))
         for row in Failsafe
         if row.check is check and row.condition is not None
     )
     for check in Check
-    for phase in Phase
+    for state in TeamState
 }
-"""Failsafes of each check, with their conditions and the reactions that a phase allows."""
+"""Failsafes of each check, with their conditions and the reactions that a state of the team allows."""
 
 
 class FailsafeState:
@@ -37,22 +36,19 @@ class FailsafeState:
         """True if the user has interrupted the flight."""
         return not self.raised.isdisjoint({Failsafe.INTERRUPTED, Failsafe.INTERRUPTED_TWICE})
 
-    def evaluate(self, check: Check, moment: Moment, phase: Phase | None = None) -> tuple[Failsafe, Trigger] | None:
-        """Return what counts among the conditions of ``check`` that call for more than is under way; None: none.
-
-        ``phase`` by which it is reacted; None: that of the moment.
-        """
+    def evaluate(self, check: Check, moment: Moment, state: TeamState) -> tuple[Failsafe, Trigger] | None:
+        """Return what counts among the conditions of ``check`` that call for more than is under way; None: none."""
         system, present = self.system, self.reaction
         held = [
             (failsafe, trigger)
-            for failsafe, condition, reaction in _ADMITTED[check, phase or moment.phase]
+            for failsafe, condition, reaction in _ADMITTED[check, state]
             if reaction > present and (trigger := condition(system, moment)) is not None
         ]
         if not held:
             return None
         return min(held, key=lambda each: (-each[0].reaction, len(each[1].vehicles), each[1].vehicles))
 
-    def raise_failsafe(self, time: float, phase: Phase, failsafe: Failsafe, trigger: Trigger) -> Reaction:
+    def raise_failsafe(self, time: float, state: TeamState, failsafe: Failsafe, trigger: Trigger) -> Reaction:
         """Record it at ``time`` (s); return its reaction, NONE if one at least as severe is under way."""
         source = trigger.source
         if len(trigger.vehicles) == 1:
@@ -61,7 +57,7 @@ class FailsafeState:
         self.raised.add(failsafe)
         if not self.reason:
             self.reason, self.time = trigger.reason, time
-        reaction = phase.state.reaction(failsafe.reaction)
+        reaction = state.reaction(failsafe.reaction)
         if reaction <= self.reaction:
             return Reaction.NONE
         self.reaction = reaction

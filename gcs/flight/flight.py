@@ -18,7 +18,7 @@ from gcs.flight.landing_place import LandingPlace
 from gcs.flight.payload_control import PayloadControl
 from gcs.flight.phase import CONTROLLED, IN_AIR, STANDING, Phase
 from gcs.flight.team import Team
-from gcs.mavlink.team_failsafe import Reaction
+from gcs.mavlink.team_failsafe import Reaction, TeamState
 from gcs.mission.cargo import CargoState
 from gcs.mission.model import Mission
 from idc_controller.arrays import Array
@@ -108,12 +108,9 @@ class Flight:
         for taken in measurements:
             self.control.estimator.attitude_steps.add(taken)
         used = self.payload_control.add(measurements) if self.phase in CONTROLLED else measurements
-        preflight, steps = self.system.preflight, self.control.estimator.attitude_steps
         if self.phase in (Phase.CHECK, Phase.ARM) or self._in_cradles:
             for taken in measurements:
-                preflight.add(taken)
-        if self.phase in (Phase.CHECK, Phase.ARM, Phase.SPOOL_UP):
-            preflight.attitude_steps, preflight.attitude_drifts = steps.total.copy(), steps.drift.copy()
+                self.system.preflight.add(taken)
         return used
 
     @property
@@ -123,18 +120,15 @@ class Flight:
     # Failsafes
 
     @property
-    def _reacting_phase(self) -> Phase:
-        """Phase by which it is reacted: vehicles above their cradles are as those whose rotors spool down.
-
-        One that is lost then holds its place by its thrust, as it takes itself to fly.
-        """
-        return Phase.SPOOL_DOWN if self.phase is Phase.SPOOL_UP and not self._in_cradles else self.phase
+    def _team_state(self) -> TeamState:
+        """State of the team. Vehicles that the thrust has lifted from their cradles fly, by their own state."""
+        return TeamState.OFFBOARD if self.phase is Phase.SPOOL_UP and not self._in_cradles else self.phase.state
 
     def raise_failsafe(self, time: float, failsafe: Failsafe, trigger: Trigger) -> None:
         """React to a failsafe, unless a reaction at least as severe is under way."""
         if self.ended and failsafe.reaction is not Reaction.END_CONTROL:
             return
-        reaction = self.failsafes.raise_failsafe(time, self._reacting_phase, failsafe, trigger)
+        reaction = self.failsafes.raise_failsafe(time, self._team_state, failsafe, trigger)
         if reaction in (Reaction.REFUSE, Reaction.END_CONTROL):
             self.phase = Phase.ENDED
         elif reaction is Reaction.DISARM:
@@ -162,7 +156,7 @@ class Flight:
     def _evaluate(self, check: Check, time: float, now: float, estimate: Estimate | None = None) -> bool:
         descent = self.flown.descent(time) if estimate is not None and self.phase is Phase.LAND else None
         moment = Moment(self.phase, time, now, self._sequence, estimate, descent)
-        raised = self.failsafes.evaluate(check, moment, self._reacting_phase)
+        raised = self.failsafes.evaluate(check, moment, self._team_state)
         if raised is not None:
             self.raise_failsafe(time, *raised)
         return raised is not None
@@ -309,7 +303,9 @@ class Flight:
             self._evaluate(Check.CONNECT, time, now)
 
     def _begin_check(self, time: float) -> None:
-        self.system.preflight.check_start = time
+        preflight, steps = self.system.preflight, self.control.estimator.attitude_steps
+        preflight.attitude_steps, preflight.attitude_drifts = steps.total, steps.drift
+        preflight.check_start = time
         self.phase = Phase.CHECK
 
     def _check(self, time: float, now: float) -> None:

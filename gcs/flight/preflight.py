@@ -51,9 +51,9 @@ class Preflight:
         self._axes: dict[int, list[Array]] = {source: [] for source in self._positions}
         """Level parts (2,) of the newest attitudes' downward axes of each source."""
         self.attitude_steps = np.zeros((len(team.links), 2))
-        """What the attitude of each vehicle has stepped without rates (N, 2) (rad), to be kept up to date."""
+        """What each vehicle's attitude has stepped without rates (N, 2) (rad): the estimator's, from the check on."""
         self.attitude_drifts = np.zeros((len(team.links), 2))
-        """What it has turned lately without rates (N, 2) (rad), to be kept up to date."""
+        """What it has turned lately without rates (N, 2) (rad): the estimator's, from the check on."""
 
     def attitude_errors(self) -> list[float]:
         """Return the error of each vehicle's attitude as it stands (N,) (rad); 0: not known yet.

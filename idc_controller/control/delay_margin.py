@@ -97,11 +97,10 @@ class HoverLoop:
         for k in range(steps):
             V[:, past[k]] = self.K @ effect
             effect = self.A @ effect
-        arriving = np.zeros((m, size))
+        arriving = V
         if late:
+            arriving = np.zeros((m, size))
             arriving[:, sent[-1]] = np.eye(m)
-        else:
-            arriving = V
         change = arriving.copy()  # arriving less flown before
         change[:, flown] -= np.eye(m)
         into = np.zeros((size, m))  # what one unit that is not flown changes
@@ -124,9 +123,9 @@ class HoverLoop:
             P /= trace
         return float(np.exp(np.mean(np.log(growth[-_AVERAGED:]))))
 
-    def loss_margin(self, steps: int, late: int = 0) -> float:
-        """Return the loss at which the mean square of the state no longer shrinks; ``steps`` and ``late`` as above."""
-        return _crossing(lambda loss: self.mean_square_growth(steps, loss, late), 0.0, 1.0)
+    def loss_margin(self, steps: int) -> float:
+        """Return the loss at which the mean square of the state no longer shrinks; ``steps`` as above."""
+        return _crossing(lambda loss: self.mean_square_growth(steps, loss), 0.0, 1.0)
 
 
 def expected_extra_age(loss: float, period: float) -> float:

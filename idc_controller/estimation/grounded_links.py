@@ -61,7 +61,10 @@ class _Command(NamedTuple):
 
 
 class _Consistency:
-    """Whether positions of a UAV follow from its velocities: where they do not, one of the two is wrong."""
+    """Whether positions of a UAV follow from its velocities: where they do not, one of the two is wrong.
+
+    The health's dead reckoning compares medians over two seconds: in that time a link leans too far.
+    """
 
     def __init__(self, limit: float, settings: GroundedLinksSettings) -> None:
         """``limit`` (m) of the difference of two positions that is none of their noise."""

@@ -205,7 +205,7 @@ class Estimate(NamedTuple):
     predict_payload_variances: Callable[[], Array] = lambda: np.full(12, np.nan)
     """Predicts the variances of the payload's position, velocity, attitude (Euler angles) and rates (12,) squared."""
     age: float = 0.0
-    """Of the newest measurement (s)."""
+    """Of the newest measurement at that time (s)."""
 
     @property
     def covariance(self) -> Array:

@@ -22,7 +22,7 @@ from gcs.flight.guarantee import GuaranteeAlarm
 from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import Phase
 from gcs.flight.plan_monitor import ImpactMonitor, PlanMonitor
-from gcs.mavlink.team_failsafe import Reaction
+from gcs.mavlink.team_failsafe import Reaction, TeamState
 from gcs.mavlink.vehicle_link import AddressConflict
 from idc_controller.geometry.shapes import Sphere
 from idc_controller.model.drag import Air
@@ -69,7 +69,7 @@ def state(*links, lost=()):
 
 
 def evaluated(flight, check=Check.LINK, phase=Phase.FLY):
-    return flight.evaluate(check, Moment(phase, 50.0, 100.0))
+    return flight.evaluate(check, Moment(phase, 50.0, 100.0), phase.state)
 
 
 def test_page_is_made_from_the_tables():
@@ -172,15 +172,15 @@ def test_one_vehicle_counts_before_several_where_reactions_are_equal():
     flight = state(*partial, link(3, age=0.5))
     found, trigger = evaluated(flight)
     assert (found, trigger.vehicles) == (Failsafe.TELEMETRY_LOST, (2,))
-    flight.raise_failsafe(50.0, Phase.FLY, found, trigger)
-    flight.raise_failsafe(50.0, Phase.FLY, *evaluated(state(*partial)))
+    flight.raise_failsafe(50.0, TeamState.OFFBOARD, found, trigger)
+    flight.raise_failsafe(50.0, TeamState.OFFBOARD, *evaluated(state(*partial)))
     assert [alarm.source for alarm in flight.alarms.alarms] == ["vehicle 3", "team"]
 
 
 def test_more_severe_reaction_wins_and_a_milder_one_is_only_recorded():
     flight = state(link(1))
     raised = [
-        flight.raise_failsafe(time, Phase.FLY, failsafe, Trigger(failsafe.code))
+        flight.raise_failsafe(time, TeamState.OFFBOARD, failsafe, Trigger(failsafe.code))
         for time, failsafe in ((1.0, Failsafe.NO_PATH), (2.0, Failsafe.TELEMETRY_LOST), (3.0, Failsafe.INTERRUPTED))
     ]
     assert raised == [Reaction.BRAKE_AND_LAND, Reaction.AUTONOMOUS_LANDING, Reaction.NONE]
@@ -209,7 +209,7 @@ def test_data_link_loss_waits_for_a_pending_descent():
     flight = state(link(1, age=4.0))
     pending = AutonomousLanding(SimpleNamespace(command_all=lambda *command: None), 40.0)
     moment = Moment(Phase.AUTONOMOUS_LANDING, 50.0, 100.0, pending)
-    assert flight.evaluate(Check.STEP, moment) is None
+    assert flight.evaluate(Check.STEP, moment, moment.phase.state) is None
     found, _ = evaluated(flight, Check.STEP, Phase.AUTONOMOUS_LANDING)
     assert found is Failsafe.DATA_LINK_LOST
 

@@ -142,7 +142,7 @@ def test_of_any_two_failsafes_in_any_phase_the_more_severe_counts_in_either_orde
         reactions = set()
         for pair in ((first, second), (second, first)):
             state = FailsafeState(system, AlarmLog())
-            done = [state.raise_failsafe(1.0, phase, failsafe, Trigger("a reason")) for failsafe in pair]
+            done = [state.raise_failsafe(1.0, phase.state, failsafe, Trigger("a reason")) for failsafe in pair]
             assert done[0] is not Reaction.NONE, (phase, first)
             assert done[1] is Reaction.NONE or done[1] > done[0], (phase, pair)
             assert state.raised == set(pair)

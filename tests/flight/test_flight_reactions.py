@@ -130,7 +130,7 @@ def test_two_failsafes_at_one_step_lead_to_the_same_reaction_and_state_in_either
                 flight.fails(failsafe)
             outcomes.append((flight.failsafes.reaction, flight.phase, flight.commands))
         assert outcomes[0] == outcomes[1], pair
-        reacting = Watched(phase)._reacting_phase.state
+        reacting = Watched(phase)._team_state
         assert outcomes[0][0] is reacting.reaction(max(failsafe.reaction for failsafe in pair))
 
 
@@ -143,6 +143,6 @@ def test_failsafe_after_the_end_is_left_alone():
 def test_links_are_checked_while_the_rotors_carry_anything():
     for phase in Phase:
         flight, asked = Watched(phase), []
-        flight.failsafes.evaluate = lambda check, moment, phase, asked=asked: asked.append(moment)
+        flight.failsafes.evaluate = lambda check, moment, state, asked=asked: asked.append(moment)
         assert not flight.check_links(1.0, 2.0)
         assert bool(asked) == (phase in CONTROLLED)

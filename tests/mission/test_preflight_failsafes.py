@@ -79,7 +79,7 @@ def checked(
     )
     on_map = SimpleNamespace(predict=lambda times: standing.predict(len(times), None))
     failsafes = FailsafeState(System(team, None, None, None, preflight, None, None, on_map), AlarmLog())
-    return failsafes.evaluate(Check.PREFLIGHT, Moment(Phase.CHECK, time, 0.0))
+    return failsafes.evaluate(Check.PREFLIGHT, Moment(Phase.CHECK, time, 0.0), Phase.CHECK.state)
 
 
 def test_team_in_its_places_is_cleared():
