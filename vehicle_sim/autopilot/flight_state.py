@@ -12,7 +12,7 @@ from gcs.mavlink.team_failsafe import TeamState
 from idc_controller.rotations_float import Vector, euler_of
 from vehicle_sim.autopilot.actuation import Actuation
 from vehicle_sim.autopilot.airframe import Airframe
-from vehicle_sim.autopilot.hold_control import HoldController, HoldPlan, on_bezier_curve, way
+from vehicle_sim.autopilot.hold_control import HoldController, HoldPlan, displacement, on_bezier_curve
 from vehicle_sim.autopilot.land_detector import LandDetector
 from vehicle_sim.autopilot.navigation import Navigation
 from vehicle_sim.autopilot.setpoint_stream import SetpointStream
@@ -162,7 +162,7 @@ class FlightState:
         if sent is not None and sent.hover_force is not None:  # those of the whole team
             north, east, down = sent.hover_force
             hover, lean = min(max(-down, weight), self.airframe.rotors.thrust_max), (-north / down, -east / down)
-        offset = way(plan.at(now).position, measured.position) if self.navigation.is_reckoned else None
+        offset = displacement(plan.at(now).position, measured.position) if self.navigation.is_reckoned else None
         self.hold = HoldController(plan, hover, lean, self.supported_thrust, self.airframe.g, settings, offset)
 
     def begin_descent(self, now: float) -> None:

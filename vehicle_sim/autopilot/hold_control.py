@@ -66,9 +66,9 @@ class HoldPlan:
         end = (x + duration * v_x / 2, y + duration * v_y / 2, z)
         return cls(start, duration, (position, quarter, end, end, end), yaw, *descent)
 
-    def moved(self, offset: Vector) -> Self:
-        """Return the plan, all of it moved by an ``offset`` (m)."""
-        return replace(self, control_points=tuple(moved(point, offset) for point in self.control_points))
+    def displaced(self, offset: Vector) -> Self:
+        """Return the plan, all of it displaced by an ``offset`` (m)."""
+        return replace(self, control_points=tuple(displaced(point, offset) for point in self.control_points))
 
     def at(self, now: float) -> PlannedState:
         """The planned state at a time (s)."""
@@ -138,14 +138,14 @@ def on_bezier_curve(axes: Sequence[Sequence[float]], share: float) -> list[float
     return [sum(map(mul, weights, points)) for points in axes]
 
 
-def way(start: Vector, end: Vector) -> Vector:
-    """Return the way (3,) from one place to another."""
+def displacement(start: Vector, end: Vector) -> Vector:
+    """Return the displacement (3,) from one place to another."""
     (x, y, z), (u, v, w) = start, end
     return u - x, v - y, w - z
 
 
-def moved(place: Vector, offset: Vector) -> Vector:
-    """Return a ``place`` moved by an ``offset``."""
+def displaced(place: Vector, offset: Vector) -> Vector:
+    """Return a ``place`` displaced by an ``offset``."""
     (x, y, z), (u, v, w) = place, offset
     return x + u, y + v, z + w
 
@@ -250,8 +250,8 @@ class HoldController:
         if self._offset is None:
             return planned
         if reckoned:
-            return planned._replace(position=moved(planned.position, self._offset))
+            return planned._replace(position=displaced(planned.position, self._offset))
         self._offset = None
         if not self.plan.is_common:
-            self.plan = self.plan.moved(way(planned.position, measured))
+            self.plan = self.plan.displaced(displacement(planned.position, measured))
         return self.plan.at(now)
