@@ -92,7 +92,7 @@ def serve(options: ServeOptions, world: Mission, vehicle_sim: ForkedProgram | No
             )
         else:
             _run_with(simulator, server, connection, interrupt, options, update)
-        update()
+        update()  # with the alarm of a second signal
         interrupt.end_flight()
     if simulator is not None and (reason := simulator.last_lines):
         print(*reason, sep="\n", file=sys.stderr)

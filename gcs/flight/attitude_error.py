@@ -48,20 +48,23 @@ def _own_deviation(estimate: Estimate, uav: int, direction: Array) -> float:
 def attitude_misaligned(system: System, moment: Moment) -> Trigger | None:
     """Return the vehicle on the ground whose attitude is wrong.
 
-    Taken off with a wrong attitude it would fall aside with its link, until that is compensated. Once it is lifted from
-    its cradle, it turns against a drift of its attitude: its body rates still show that.
+    Taken off with a wrong attitude it would fall aside with its link, until that is compensated. On the pad the payload
+    unit shows it; where it has landed its link leans as it came to rest, and what its attitude has stepped without
+    rates counts, in all flights. Once it is lifted from its cradle, it turns against a drift of its attitude: its body
+    rates still show that.
     """
     if moment.phase not in (Phase.CHECK, Phase.ARM, Phase.SPOOL_UP):
         return None
-    limit, preflight, by_rates = system.settings.pad_attitude_error, system.preflight, "that by its rates"
-    errors = preflight.attitude_errors()
-    if min(errors) > limit and not preflight.landed:
-        text = f"the payload unit reports an attitude {min(errors):.2f} rad off every vehicle's (limit {limit:g} rad)"
-        return Trigger(text, source="payload")
-    for found, right in (
-        (errors, by_rates if preflight.landed else "the payload's"), (preflight.attitude_drift(), by_rates)
-    ):  # fmt: skip
-        for i, error in enumerate(found):
+    limit, steps, rates = system.settings.pad_attitude_error, system.estimator.attitude_steps, "that by its rates"
+    if system.preflight.landed:
+        shown = np.linalg.norm(steps.total, axis=1).tolist(), rates
+    else:
+        shown = system.preflight.attitude_errors(), "the payload's"
+        if (least := min(shown[0])) > limit:
+            text = f"the payload unit reports an attitude {least:.2f} rad off every vehicle's (limit {limit:g} rad)"
+            return Trigger(text, source="payload")
+    for errors, right in (shown, (np.linalg.norm(steps.drift, axis=1).tolist(), rates)):
+        for i, error in enumerate(errors):
             if error > limit:
                 name = f"vehicle {system.team.links[i].system_id}"
                 return Trigger(f"{name} reports an attitude {error:.2f} rad off {right} (limit {limit:g} rad)", (i,))

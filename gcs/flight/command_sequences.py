@@ -80,7 +80,7 @@ class AutonomousLanding(CommandSequence):
         _enter(team, TeamState.OFFBOARD.next)
 
     def step(self, time: float, now: float) -> None:
-        """See :class:`CommandSequence`. Vehicles without telemetry may receive commands: also to those it is sent."""
+        """See :class:`CommandSequence`. The descent is sent to vehicles without telemetry, too: they may receive it."""
         s, team, elapsed = self._settings.failsafe, self._team, time - self._since
         landed = team.reachable_are_disarmed(now, s.data_link_timeout)
         self._descent_answered |= not (self.descent_pending or team.waits)

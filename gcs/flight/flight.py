@@ -303,9 +303,7 @@ class Flight:
             self._evaluate(Check.CONNECT, time, now)
 
     def _begin_check(self, time: float) -> None:
-        preflight, steps = self.system.preflight, self.control.estimator.attitude_steps
-        preflight.attitude_steps, preflight.attitude_drifts = steps.total, steps.drift
-        preflight.check_start = time
+        self.system.preflight.check_start = time
         self.phase = Phase.CHECK
 
     def _check(self, time: float, now: float) -> None:

@@ -50,19 +50,9 @@ class Preflight:
         self._positions: dict[int, list[Array]] = {source: [] for source in (PAYLOAD, *range(len(team.links)))}
         self._axes: dict[int, list[Array]] = {source: [] for source in self._positions}
         """Level parts (2,) of the newest attitudes' downward axes of each source."""
-        self.attitude_steps = np.zeros((len(team.links), 2))
-        """What each vehicle's attitude has stepped without rates (N, 2) (rad): the estimator's, from the check on."""
-        self.attitude_drifts = np.zeros((len(team.links), 2))
-        """What it has turned lately without rates (N, 2) (rad): the estimator's, from the check on."""
 
     def attitude_errors(self) -> list[float]:
-        """Return the error of each vehicle's attitude as it stands (N,) (rad); 0: not known yet.
-
-        On the pad it is the angle between its axis and the payload unit's. Where it has landed, its link leans as it
-        came to rest: there it is what its attitude has stepped without rates, in all flights.
-        """
-        if self.landed:
-            return [float(np.linalg.norm(step)) for step in self.attitude_steps]
+        """Return the angle on the pad of each vehicle's axis to the payload unit's (N,) (rad); 0: not known yet."""
         payload, *vehicles = (self._axes[source] for source in (PAYLOAD, *range(len(self._team.links))))
         if len(payload) < _ATTITUDES:
             return [0.0] * len(vehicles)
@@ -71,10 +61,6 @@ class Preflight:
             float(np.linalg.norm(np.mean(axes, axis=0) - level)) if len(axes) == _ATTITUDES else 0.0
             for axes in vehicles
         ]
-
-    def attitude_drift(self) -> list[float]:
-        """Return what each vehicle's attitude has turned lately without rates (N,) (rad)."""
-        return [float(np.linalg.norm(drift)) for drift in self.attitude_drifts]
 
     def restart(self, *, landed: bool) -> None:
         """Begin anew: on the pad, or where the payload has ``landed``."""

@@ -121,6 +121,7 @@ def test_second_interrupt_ends_control_whether_the_world_answers_or_not(answers,
     (failsafe,) = station.failsafes
     assert failsafe[:2] == (time, Failsafe.INTERRUPTED_TWICE)
     assert not station.received and not station.ended
+    assert world.answers == ([JOIN, LEAVE] if answers else [JOIN])
 
 
 def test_tick_alone_ends_a_wait_and_comes_behind_the_datagrams_of_the_vehicles():

@@ -59,9 +59,16 @@ def pad(*errors, phase=Phase.SPOOL_UP, payload=0.0, samples=10):
             roll, pitch = rng.normal((0.0, error), SystemConfig().sensors.attitude_deg * np.pi / 180.0)
             turn = quaternion_from_euler(roll, pitch, 0.3)
             preflight.add(Attitude(0.04 * k, source, turn, np.zeros(3)))
-    team = SimpleNamespace(links=links)
-    system = SimpleNamespace(preflight=preflight, team=team, settings=SystemConfig().flight.failsafe)
-    return attitude_misaligned(system, Moment(phase, 1.0, 1.0))
+    return attitude_misaligned(on_ground(preflight), Moment(phase, 1.0, 1.0))
+
+
+def on_ground(preflight):
+    """Return what conditions on the ground are evaluated on, of vehicles whose attitudes follow from their rates."""
+    team = preflight._team
+    nothing = np.zeros((len(team.links), 2))
+    estimator = SimpleNamespace(attitude_steps=SimpleNamespace(total=nothing.copy(), drift=nothing.copy()))
+    settings = SystemConfig().flight.failsafe
+    return SimpleNamespace(preflight=preflight, team=team, settings=settings, estimator=estimator)
 
 
 def test_vehicle_whose_attitude_is_not_the_payloads_is_named_before_it_is_lifted():
@@ -78,24 +85,23 @@ def test_slope_of_the_pad_is_no_wrong_attitude_and_a_wrong_payload_unit_is_named
 
 def test_vehicle_whose_attitude_has_stepped_without_rates_does_not_take_off_from_where_it_has_landed():
     links = [SimpleNamespace(system_id=i + 1) for i in range(4)]
-    team = SimpleNamespace(links=links)
-    preflight = Preflight(team)
+    preflight = Preflight(SimpleNamespace(links=links))
     preflight.restart(landed=True)
-    system = SimpleNamespace(preflight=preflight, team=team, settings=SystemConfig().flight.failsafe)
+    system = on_ground(preflight)
     moment = Moment(Phase.CHECK, 1.0, 1.0)
     preflight.add(Attitude(0.0, 1, quaternion_from_euler(0.1, 0.0, 0.0), np.zeros(3)))  # as its link leans
     assert attitude_misaligned(system, moment) is None
-    preflight.attitude_steps[2] = 0.1, -0.1
+    system.estimator.attitude_steps.total[2] = 0.1, -0.1
     found = attitude_misaligned(system, moment)
     assert found.vehicles == (2,) and "vehicle 3 reports an attitude 0.14 rad off that by its rates" in found.reason
 
 
 def test_drift_of_an_attitude_ends_the_spool_up_though_the_vehicle_turns_against_it():
-    preflight = Preflight(SimpleNamespace(links=[SimpleNamespace(system_id=i + 1) for i in range(4)]))
-    system = SimpleNamespace(preflight=preflight, team=preflight._team, settings=SystemConfig().flight.failsafe)
-    preflight.attitude_drifts[1] = 0.04, 0.02
+    system = on_ground(Preflight(SimpleNamespace(links=[SimpleNamespace(system_id=i + 1) for i in range(4)])))
+    drift = system.estimator.attitude_steps.drift
+    drift[1] = 0.04, 0.02
     assert attitude_misaligned(system, Moment(Phase.SPOOL_UP, 1.0, 1.0)) is None
-    preflight.attitude_drifts[1] = 0.05, 0.02
+    drift[1] = 0.05, 0.02
     found = attitude_misaligned(system, Moment(Phase.SPOOL_UP, 1.0, 1.0))
     assert found.vehicles == (1,) and "0.05 rad off that by its rates" in found.reason
     assert attitude_misaligned(system, Moment(Phase.CLIMB, 1.0, 1.0)) is None

@@ -78,7 +78,9 @@ def checked(
         [MapObstacle(f"pole {r:g}", Pole(r, 6.0), np.array([x, y, -3.0])) for x, y, r in poles]
     )
     on_map = SimpleNamespace(predict=lambda times: standing.predict(len(times), None))
-    failsafes = FailsafeState(System(team, None, None, None, preflight, None, None, on_map), AlarmLog())
+    nothing = np.zeros((len(links), 2))
+    estimator = SimpleNamespace(attitude_steps=SimpleNamespace(total=nothing, drift=nothing))
+    failsafes = FailsafeState(System(team, estimator, None, None, preflight, None, None, on_map), AlarmLog())
     return failsafes.evaluate(Check.PREFLIGHT, Moment(Phase.CHECK, time, 0.0), Phase.CHECK.state)
 
 
