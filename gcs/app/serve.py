@@ -14,11 +14,13 @@ from typing import NamedTuple
 from gcs.app.flight_log import FlightLog
 from gcs.app.fly import simulator_arguments
 from gcs.app.fly_options import FlyOptions
+from gcs.app.logs import LOG
 from gcs.app.served_flight import Flights, take_truth
 from gcs.drivers.connection import Connection, LockstepConnection
 from gcs.drivers.forked_program import ForkedProgram
 from gcs.drivers.interrupt import Interrupt
 from gcs.drivers.lockstep import Pace, run_in_lockstep
+from gcs.drivers.participant import INTERRUPTED_TWICE
 from gcs.drivers.realtime import run_in_real_time
 from gcs.drivers.simulator import Simulator
 from gcs.flight.ground_station import GroundStation
@@ -92,7 +94,8 @@ def serve(options: ServeOptions, world: Mission, vehicle_sim: ForkedProgram | No
             )
         else:
             _run_with(simulator, server, connection, interrupt, options, update)
-        update()  # with the alarm of a second signal
+        if interrupt.requested_again:
+            LOG.error(INTERRUPTED_TWICE)
         interrupt.end_flight()
     if simulator is not None and (reason := simulator.last_lines):
         print(*reason, sep="\n", file=sys.stderr)

@@ -7,6 +7,8 @@ from gcs.drivers.interrupt import Interrupt
 from gcs.flight.failsafe import Failsafe
 from gcs.mavlink.address import Address
 
+INTERRUPTED_TWICE = "interrupted twice: the vehicles land autonomously"
+
 
 class Participant(Protocol):
     """A participant on the wire without socket and clock; times in s."""
@@ -47,8 +49,7 @@ class InterruptWatch:
     def ends(self, now: float) -> bool:
         """Raise the failsafe of a signal that has come at ``now`` (s); return True if control is to end."""
         if self._interrupt.requested_again:
-            reason = "interrupted twice: the vehicles land autonomously"
-            self._participant.raise_failsafe(now, Failsafe.INTERRUPTED_TWICE, reason)
+            self._participant.raise_failsafe(now, Failsafe.INTERRUPTED_TWICE, INTERRUPTED_TWICE)
         elif self._interrupt.requested and not self._landing:
             self._landing = True
             self._participant.raise_failsafe(now, Failsafe.INTERRUPTED, "interrupted")

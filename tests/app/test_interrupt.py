@@ -14,9 +14,11 @@ import pytest
 from mission_files import MISSIONS
 from programs import ENVIRONMENT, PATIENCE, swarm_process
 
+from gcs.app.cli import main
 from gcs.app.exit_status import ExitStatus
 from gcs.app.output import output_that_may_end
 from gcs.drivers.interrupt import SIGNALS, Interrupt
+from gcs.drivers.participant import INTERRUPTED_TWICE
 
 HANG_UP, CTRL_C, TERMINATE = signal.SIGHUP, signal.SIGINT, signal.SIGTERM
 
@@ -57,6 +59,16 @@ def test_signal_that_compiled_code_reports_as_its_own_error_is_an_interrupt():
 def test_error_of_compiled_code_without_a_signal_is_passed_on():
     with pytest.raises(SystemError), Interrupt():
         raise SystemError
+
+
+def test_service_that_is_interrupted_twice_says_so(monkeypatch, capsys, tmp_path):
+    def run(*_, **__):
+        send(CTRL_C)
+        send(CTRL_C)
+
+    monkeypatch.setattr("gcs.app.serve.run_in_real_time", run)
+    main(["serve", "--connect", "--listen", "127.0.0.1:0", "--run-dir", str(tmp_path / "run")])
+    assert INTERRUPTED_TWICE in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("number", SIGNALS)
